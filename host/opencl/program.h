@@ -1,0 +1,27 @@
+#pragma once
+
+#include "opencl/device.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tristim {
+
+/// Macros for one program, in order: {"W", "3"} becomes -D W=3.
+using Macros = std::vector<std::pair<std::string, std::string>>;
+
+/// How programs are built.
+struct BuildOptions {
+    bool fast_math = false;  ///< -cl-fast-relaxed-math and native_* functions
+    std::string dump_dir;    ///< if set, the exact source that ran is written there, its options as #defines on top
+};
+
+/// The source of a kernel file ("eye_pass.cl") with its includes put in place, each once.
+std::string flatten_kernel_source(const std::string& kernel_file);
+
+/// Builds one kernel file for a device. Throws Error with the build log if it does not compile.
+::cl::Program build_program(const Device& device, const std::string& kernel_file, const Macros& macros,
+                            const BuildOptions& options);
+
+} // namespace tristim

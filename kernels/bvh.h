@@ -1,0 +1,233 @@
+// Ray traversal of the eight-wide BVH (layout in shared_types.h), one ray per work-item, eight boxes or eight triangles
+// at a time. Watertight: triangles by Woop, Benthin & Wald 2013 ("Watertight Ray/Triangle Intersection"), boxes widened
+// by the builder in proportion to the triangles' coordinates and here in proportion to the ray's origin, so that
+// rounding never hides a box whose triangle is hit. Both sides of a triangle are hit.
+//
+// t is in units of |direction|, which should be about 1: components below BVH_SMALLEST_DIRECTION are raised to it, so
+// that no infinity or NaN appears in the slab test.
+#ifndef TRISTIM_BVH_H
+#define TRISTIM_BVH_H
+
+#include "config.h"
+#include "shared_types.h"
+
+#define BVH_SMALLEST_DIRECTION 1e-18f
+
+// Half a unit in the last place of 1, and how many of them times the largest coordinate a box is widened by. Slabs: 5 for
+// the reciprocal (OpenCL allows 2.5 ulp), 3 for the products and the sum; triangles: 6 for translating and shearing a
+// vertex (Woop et al. 2013, section 3). The builder (host/bvh/build_bvh.cpp) adds the same multiple of the triangles' coordinates.
+#define BVH_ROUNDING 5.9604645e-8f
+#define BVH_PADDING (16.0f * BVH_ROUNDING)
+
+// Where a ray hit: point = (1-u-v) v0 + u v1 + v v2. triangle = -1 if it hit nothing.
+typedef struct Hit {
+    float t;
+    int triangle;
+    float u, v;
+} Hit;
+
+// What the traversal needs of a ray, computed once.
+typedef struct BvhRay {
+    float3 inverse;      // 1 / direction
+    float3 entry, exit;  // -origin / direction, moved outwards for planes where the ray enters and leaves a box
+    int3 entry_row;      // where in a BvhNode, in floats, the planes lie through which the ray enters a box
+    int3 axis;           // rows of a vertex's coordinates; z is the direction's largest component
+    float3 origin;       // in the order of axis
+    float3 shear;        // Woop et al. 2013, section 3.2
+} BvhRay;
+
+float bvh_component(float3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+BvhRay bvh_prepare_ray(float3 origin, float3 direction) {
+    BvhRay ray;
+    const float3 size = fabs(direction);
+    const float3 clamped = copysign(max(size, (float3)(BVH_SMALLEST_DIRECTION)), direction);
+    ray.inverse = 1.0f / clamped;
+    const float3 reach = fabs(origin);
+    const float3 widening = copysign((float3)(BVH_PADDING * max(max(reach.x, reach.y), reach.z)), direction);
+    ray.entry = -(origin + widening) * ray.inverse;
+    ray.exit = -(origin - widening) * ray.inverse;
+    ray.entry_row.x = signbit(direction.x) ? 24 : 0;
+    ray.entry_row.y = signbit(direction.y) ? 32 : 8;
+    ray.entry_row.z = signbit(direction.z) ? 40 : 16;
+
+    ray.axis.z = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+    ray.axis.x = ray.axis.z == 2 ? 0 : ray.axis.z + 1;
+    ray.axis.y = ray.axis.x == 2 ? 0 : ray.axis.x + 1;
+    ray.origin = (float3)(bvh_component(origin, ray.axis.x), bvh_component(origin, ray.axis.y),
+                          bvh_component(origin, ray.axis.z));
+    ray.shear.z = bvh_component(ray.inverse, ray.axis.z);
+    ray.shear.x = bvh_component(direction, ray.axis.x) * ray.shear.z;
+    ray.shear.y = bvh_component(direction, ray.axis.y) * ray.shear.z;
+    return ray;
+}
+
+// One byte of each lane's comparison result, 0 or 1.
+ulong bvh_lane_mask(int8 condition) { return as_ulong(convert_char8(condition)) & 0x0101010101010101UL; }
+
+// The lowest lane of a mask that is not zero.
+int bvh_first_lane(ulong mask) { return (int)(popcount((mask - 1) & ~mask) >> 3); }
+
+// The children of a node that the ray meets before t_max; *entry_t is where it enters each.
+ulong bvh_intersect_boxes(const global BvhNode* node, const BvhRay* ray, float t_max, float8* entry_t) {
+    const global float* rows = (const global float*)node;
+    const float8 entry_x = fma(vload8(0, rows + ray->entry_row.x), (float8)(ray->inverse.x), (float8)(ray->entry.x));
+    const float8 entry_y = fma(vload8(0, rows + ray->entry_row.y), (float8)(ray->inverse.y), (float8)(ray->entry.y));
+    const float8 entry_z = fma(vload8(0, rows + ray->entry_row.z), (float8)(ray->inverse.z), (float8)(ray->entry.z));
+    const float8 exit_x = fma(vload8(0, rows + (24 - ray->entry_row.x)), (float8)(ray->inverse.x), (float8)(ray->exit.x));
+    const float8 exit_y = fma(vload8(0, rows + (40 - ray->entry_row.y)), (float8)(ray->inverse.y), (float8)(ray->exit.y));
+    const float8 exit_z = fma(vload8(0, rows + (56 - ray->entry_row.z)), (float8)(ray->inverse.z), (float8)(ray->exit.z));
+    *entry_t = max(max(entry_x, entry_y), max(entry_z, (float8)(0.0f)));
+    const float8 exit_t = min(min(exit_x, exit_y), min(exit_z, (float8)(t_max)));
+    return bvh_lane_mask(*entry_t <= exit_t);
+}
+
+// Eight triangles seen along the ray, edge functions (U, V, W) made non-negative where the triangle is hit.
+typedef struct BvhEdges {
+    float8 v, w, determinant, scaled_t;
+    ulong hits;
+} BvhEdges;
+
+// Without contraction, an edge function has the same absolute value and the opposite sign in the triangle on the edge's
+// other side, and its sign is that of the exact value, or zero. With fused multiply-adds neither would hold.
+float8 bvh_edge_function(float8 a_x, float8 a_y, float8 b_x, float8 b_y) {
+#pragma OPENCL FP_CONTRACT OFF
+    const float8 left = a_x * b_y;
+    const float8 right = a_y * b_x;
+    return left - right;
+}
+
+// Woop, Benthin & Wald 2013, listing in appendix A, without the division and without the double-precision fallback: an
+// edge function of zero counts as inside on both sides.
+BvhEdges bvh_intersect_triangles(const global BvhLeaf* leaf, const BvhRay* ray, float t_max) {
+    const global float* rows_x = (const global float*)leaf + 8 * ray->axis.x;
+    const global float* rows_y = (const global float*)leaf + 8 * ray->axis.y;
+    const global float* rows_z = (const global float*)leaf + 8 * ray->axis.z;
+    const float8 a_z = vload8(0, rows_z) - ray->origin.z;
+    const float8 b_z = vload8(3, rows_z) - ray->origin.z;
+    const float8 c_z = vload8(6, rows_z) - ray->origin.z;
+    const float8 a_x = fma(a_z, (float8)(-ray->shear.x), vload8(0, rows_x) - ray->origin.x);
+    const float8 a_y = fma(a_z, (float8)(-ray->shear.y), vload8(0, rows_y) - ray->origin.y);
+    const float8 b_x = fma(b_z, (float8)(-ray->shear.x), vload8(3, rows_x) - ray->origin.x);
+    const float8 b_y = fma(b_z, (float8)(-ray->shear.y), vload8(3, rows_y) - ray->origin.y);
+    const float8 c_x = fma(c_z, (float8)(-ray->shear.x), vload8(6, rows_x) - ray->origin.x);
+    const float8 c_y = fma(c_z, (float8)(-ray->shear.y), vload8(6, rows_y) - ray->origin.y);
+
+    const float8 u = bvh_edge_function(c_x, c_y, b_x, b_y);
+    const float8 v = bvh_edge_function(a_x, a_y, c_x, c_y);
+    const float8 w = bvh_edge_function(b_x, b_y, a_x, a_y);
+    const float8 determinant = u + v + w;
+    const int8 sign = as_int8(determinant) & (int8)(0x80000000);
+    const float8 t = (u * a_z + v * b_z + w * c_z) * ray->shear.z;
+
+    BvhEdges edges;
+    edges.v = as_float8(as_int8(v) ^ sign);
+    edges.w = as_float8(as_int8(w) ^ sign);
+    edges.determinant = fabs(determinant);
+    edges.scaled_t = as_float8(as_int8(t) ^ sign);
+    const float8 smallest = min(as_float8(as_int8(u) ^ sign), min(edges.v, edges.w));
+    edges.hits = bvh_lane_mask((smallest >= 0.0f) & (edges.scaled_t > 0.0f) & (edges.scaled_t < t_max * edges.determinant));
+    return edges;
+}
+
+// Replaces *hit by the leaf's nearest hit if that is nearer.
+void bvh_closest_in_leaf(const global BvhLeaf* leaf, const BvhRay* ray, Hit* hit) {
+    const BvhEdges edges = bvh_intersect_triangles(leaf, ray, hit->t);
+    if (edges.hits == 0)
+        return;
+    const float8 scale = 1.0f / edges.determinant;
+    float t[8], u[8], v[8];
+    vstore8(edges.scaled_t * scale, 0, t);
+    vstore8(edges.v * scale, 0, u);
+    vstore8(edges.w * scale, 0, v);
+    for (ulong hits = edges.hits; hits != 0; hits &= hits - 1) {
+        const int lane = bvh_first_lane(hits);
+        if (t[lane] < hit->t) {
+            hit->t = t[lane];
+            hit->triangle = leaf->id[lane];
+            hit->u = u[lane];
+            hit->v = v[lane];
+        }
+    }
+}
+
+// The nearest hit at 0 < t < t_max.
+Hit bvh_closest_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, float3 origin, float3 direction,
+                    float t_max) {
+    const BvhRay ray = bvh_prepare_ray(origin, direction);
+    Hit hit;
+    hit.t = t_max;
+    hit.triangle = -1;
+    hit.u = 0.0f;
+    hit.v = 0.0f;
+
+    // Entries to visit, the nearest of each node's children on top: the bits of the (non-negative) distance above the
+    // child reference, so that entries compare as integers.
+    ulong stack[BVH_STACK_SIZE];
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        const ulong entry = stack[--top];
+        if (as_float((uint)(entry >> 32)) > hit.t)
+            continue;
+        const int child = (int)(uint)entry;
+        if (child < 0) {
+            bvh_closest_in_leaf(leaves + ~child, &ray, &hit);
+            continue;
+        }
+        const global BvhNode* node = nodes + child;
+        float8 entry_t;
+        ulong hits = bvh_intersect_boxes(node, &ray, hit.t, &entry_t);
+        if (hits == 0)
+            continue;
+        uint distances[8];
+        vstore8(as_uint8(entry_t), 0, distances);
+        const int bottom = top;
+        for (; hits != 0; hits &= hits - 1) {
+            const int lane = bvh_first_lane(hits);
+            const ulong pushed = ((ulong)distances[lane] << 32) | (uint)node->child[lane];
+            int place = top++;
+            for (; place > bottom && stack[place - 1] < pushed; --place)
+                stack[place] = stack[place - 1];
+            stack[place] = pushed;
+        }
+    }
+    return hit;
+}
+
+// Whether anything is hit at 0 < t < t_max.
+bool bvh_any_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, float3 origin, float3 direction,
+                 float t_max) {
+    const BvhRay ray = bvh_prepare_ray(origin, direction);
+    int stack[BVH_STACK_SIZE];
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        const int child = stack[--top];
+        if (child < 0) {
+            if (bvh_intersect_triangles(leaves + ~child, &ray, t_max).hits != 0)
+                return true;
+            continue;
+        }
+        const global BvhNode* node = nodes + child;
+        float8 entry_t;
+        for (ulong hits = bvh_intersect_boxes(node, &ray, t_max, &entry_t); hits != 0; hits &= hits - 1)
+            stack[top++] = node->child[bvh_first_lane(hits)];
+    }
+    return false;
+}
+
+// The point p of a surface moved off it, to the side that the geometric normal points to, so that a ray from there does
+// not meet the surface again: by 256 units in the last place of each coordinate, or, near zero, by a fixed distance
+// (Wächter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection"). p should be interpolated from the
+// triangle's vertices with the hit's u and v, not computed from origin and t.
+float3 offset_ray_origin(float3 p, float3 geometric_normal) {
+    const float near_zero = 1.0f / 32.0f;
+    const float fixed_step = 1.0f / 65536.0f;
+    const int3 steps = convert_int3(256.0f * geometric_normal);
+    const int3 outwards = select(steps, -steps, p < 0.0f);
+    const float3 moved = as_float3(as_int3(p) + outwards);
+    return select(moved, p + fixed_step * geometric_normal, fabs(p) < near_zero);
+}
+
+#endif
