@@ -7,4 +7,100 @@
 #define BVH_STACK_SIZE 64
 #endif
 
+// What the scene calls for (host/render/effects.h); an effect that is off leaves no code.
+#ifndef HAS_DIELECTRIC
+#define HAS_DIELECTRIC 0  // a smooth dielectric
+#endif
+#ifndef HAS_DISPERSION
+#define HAS_DISPERSION 0  // a dielectric whose index depends on the wavelength: paths may keep one slot
+#endif
+#ifndef HAS_CONDUCTOR
+#define HAS_CONDUCTOR 0  // a smooth conductor: camera paths may be coloured
+#endif
+#ifndef HAS_SHADING_NORMALS
+#define HAS_SHADING_NORMALS 0  // a mesh with vertex normals
+#endif
+#ifndef HAS_THIN_LENS
+#define HAS_THIN_LENS 0  // a camera with a lens radius
+#endif
+#ifndef HAS_POINT_LIGHT
+#define HAS_POINT_LIGHT 0
+#endif
+#ifndef HAS_SPOT_LIGHT
+#define HAS_SPOT_LIGHT 0
+#endif
+#ifndef HAS_DISTANT_LIGHT
+#define HAS_DISTANT_LIGHT 0
+#endif
+#ifndef HAS_INFINITE_LIGHT
+#define HAS_INFINITE_LIGHT 0
+#endif
+#ifndef HAS_AREA_LIGHT
+#define HAS_AREA_LIGHT 0
+#endif
+
+// Wavelengths: the pass's table has W of them, padded to W_PADDED = BLOCKS·LANES with wavelengths of weight zero. Paths
+// carry BLOCKS vectors of LANES floats.
+#ifndef W
+#define W 3
+#endif
+#ifndef LANES
+#define LANES 4  // 4, 8 or 16
+#endif
+#ifndef BLOCKS
+#define BLOCKS 1
+#endif
+#define W_PADDED (LANES * BLOCKS)
+
+// The sampler that fills the table: read by wavelengths.cl alone.
+#define SAMPLER_TRISTIMULUS 0
+#define SAMPLER_SPECTRAL 1
+#define SAMPLER_RGB 2
+#ifndef SAMPLER
+#define SAMPLER SAMPLER_TRISTIMULUS
+#endif
+#ifndef SEQUENCE_RANDOM
+#define SEQUENCE_RANDOM 0  // 1: u is a new random number in each pass and set (the paper); 0: stratified golden ratio
+#endif
+
+// Photons keep the flux of every wavelength beside XYZ: needed where camera paths may depend on the wavelength.
+#define STORE_SPECTRAL_FLUX (HAS_DISPERSION || HAS_CONDUCTOR)
+// Camera paths may carry a throughput of its own for every wavelength.
+#define COLOURED_EYE HAS_CONDUCTOR
+
+// Vertices after which a path ends.
+#ifndef MAX_DEPTH
+#define MAX_DEPTH 16
+#endif
+
+// 1: photons count from their first hit and direct light is not sampled (--direct photons).
+#ifndef DIRECT_PHOTONS
+#define DIRECT_PHOTONS 0
+#endif
+
+// 1: radii follow Hachisuka et al. 2008's statistics of each pixel; 0: Knaus & Zwicker 2011's schedule for all.
+#ifndef RADIUS_STATISTICS
+#define RADIUS_STATISTICS 0
+#endif
+
+// Photon paths that one work-item traces, one after the other, into a piece of the photon buffer of its own.
+#ifndef PATHS_PER_ITEM
+#define PATHS_PER_ITEM 64
+#endif
+
+// Bits of a sort key that one pass of the radix sort looks at.
+#ifndef RADIX_BITS
+#define RADIX_BITS 9
+#endif
+
+// 1: every ray that is traced is also written to a buffer, for `tristim bench-pass`.
+#ifndef RECORD_RAYS
+#define RECORD_RAYS 0
+#endif
+
+// 1: built with -cl-fast-relaxed-math.
+#ifndef FAST_MATH
+#define FAST_MATH 0
+#endif
+
 #endif

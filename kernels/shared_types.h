@@ -44,9 +44,120 @@ typedef struct RayHit {
     float u, v;
 } RayHit;
 
+// The camera, the scene's extent and what is the same for every pass, 128 bytes. A raster point (x, y), in pixels from the
+// top left corner of the whole image, is seen along corner + x·right + y·down (not normalised; its component along the
+// camera's axis is 1, so that focal_distance times it lies in the plane of focus).
+typedef struct SceneConstants {
+    float camera_x, camera_y, camera_z;
+    float lens_radius;
+    float corner_x, corner_y, corner_z;
+    float focal_distance;
+    float right_x, right_y, right_z;
+    int light_count;
+    float down_x, down_y, down_z;
+    int region_x;
+    float centre_x, centre_y, centre_z;  // of the scene's bounding sphere
+    float radius;
+    float lens_right_x, lens_right_y, lens_right_z;  // unit vectors that span the lens
+    int region_y;
+    float lens_up_x, lens_up_y, lens_up_z;
+    int region_width;
+    int region_height;
+    int infinite_light;  // index of the light that a ray sees that hits nothing, or -1
+    int image_width;
+    int image_height;
+} SceneConstants;
+
+// A triangle as the shading needs it, 64 bytes: point = v0 + u edge1 + v edge2.
+typedef struct Triangle {
+    float v0_x, v0_y, v0_z;
+    int material;
+    float edge1_x, edge1_y, edge1_z;
+    int light;  // the area light on it, or -1
+    float edge2_x, edge2_y, edge2_z;
+    int normals;  // index of its first vertex normal (three floats each, three in a row), or -1
+    float normal_x, normal_y, normal_z;  // unit geometric normal
+    int unused;
+} Triangle;
+
+#define MATERIAL_DIFFUSE 0
+#define MATERIAL_DIELECTRIC 1
+#define MATERIAL_CONDUCTOR 2
+
+// A material, 32 bytes; reflectance, eta and k are rows of the table of spectra.
+typedef struct SurfaceMaterial {
+    int kind;
+    int reflectance;
+    int eta;
+    int k;
+    int dispersive;  // a dielectric whose eta depends on the wavelength
+    int unused[3];
+} SurfaceMaterial;
+
+#define LIGHT_POINT 0
+#define LIGHT_SPOT 1
+#define LIGHT_DISTANT 2
+#define LIGHT_INFINITE 3
+#define LIGHT_AREA 4
+
+// A light, 96 bytes. An area light is one triangle: position is v0, direction its unit normal.
+typedef struct SceneLight {
+    int kind;
+    int spectrum;       // row of the table of spectra, normalised to Y = 1
+    float scale;        // times the spectrum: intensity, irradiance or radiance, as host/scene/scene.h says
+    float probability;  // with which it is chosen, in proportion to its power
+    float position_x, position_y, position_z;
+    float cos_total_width;
+    float direction_x, direction_y, direction_z;
+    float cos_falloff_start;
+    float edge1_x, edge1_y, edge1_z;
+    float area;
+    float edge2_x, edge2_y, edge2_z;
+    int two_sided;
+    int unused[4];
+} SceneLight;
+
+// Values of slot in visible points and photons that are not the number of a single wavelength.
+#define SLOT_ALL (-1)   // every wavelength of the pass
+#define SLOT_NONE (-2)  // no visible point: the camera path ended without meeting a diffuse surface
+
+// Where a camera path met a diffuse surface, 48 bytes. throughput is the same for every wavelength it holds for, unless
+// the scene has coloured specular surfaces (COLOURED_EYE), when slot = SLOT_ALL refers to a row of its own.
+typedef struct VisiblePoint {
+    float x, y, z;
+    tristim_uint normal;  // octahedral, on the side that the path came from
+    float throughput;
+    int slot;
+    float direct_x, direct_y, direct_z;  // XYZ of emission seen and of direct light, throughput included
+    float radius;                        // of this pass's search for photons, scene units
+    int unused[2];
+} VisiblePoint;
+
+// A photon on a diffuse surface, 32 bytes. Flux is multiplied by the surface's BRDF (reflectance/π), so that the
+// reflected radiance is a plain sum: X, Y, Z over every wavelength that the photon carries.
+typedef struct Photon {
+    float x, y, z;
+    tristim_uint normal;  // octahedral, on the side that the photon came from
+    float flux_x, flux_y, flux_z;
+    int slot;
+} Photon;
+
+// Running sums of one pixel, compensated (high and low part), 64 bytes: survive a million passes in float.
+typedef struct FilmPixel {
+    float sum_high[3], sum_low[3];
+    float square_high[3], square_low[3];
+    tristim_uint samples;
+    tristim_uint rejected;  // samples that were not finite
+    float statistics_radius;  // --radius statistics: r, and the photons counted so far
+    float statistics_count;
+} FilmPixel;
+
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BvhNode) == 256 && sizeof(BvhLeaf) == 320);
 static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
+static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 32);
+static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
+static_assert(sizeof(FilmPixel) == 64);
 } // namespace tristim
 #endif
 

@@ -52,7 +52,7 @@ METALS = {
     "Au": "gold",
     "Cu": "copper",
     "MgO": "magnesium oxide",
-    "TiO2": "titanium dioxide (rutile, ordinary ray)",
+    "TiO2": "titanium dioxide (rutile)",
 }
 
 
@@ -90,7 +90,7 @@ def write_colour_matching_functions(colour):
     for i, axis in enumerate("xyz"):
         write(f"cie-{axis}",
               [f"CIE 1931 2 degree colour matching function {axis}-bar, 1 nm.",
-               "Source: CIE 018:2019, table 6 (through colour-science)."],
+               "Source: CIE 018:2019 (through colour-science)."],
               zip(cmfs.wavelengths, cmfs.values[:, i]), decimals=12)
 
 
@@ -106,13 +106,16 @@ def write_illuminants(colour):
         table = tables[f"FL{i}"]
         write(f"stdillum-F{i}",
               [f"CIE fluorescent illuminant FL{i}, relative spectral power, 5 nm.",
-               "Source: CIE 15:2018, table 10.1 (through colour-science)."],
+               "Source: CIE 15:2018 (through colour-science)."],
               zip(table.wavelengths, table.values))
-    table = tables["D60"]
+    # The daylight formula of CIE 15:2018 at a correlated colour temperature of 6000 K, M1 and M2
+    # rounded to three decimals as the CIE prescribes.
+    daylight = colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(6000.0), M1_M2_rounding=True)
     write("illum-acesD60",
-          ["Daylight of 6000 K (CIE daylight formula), the white of ACES, relative spectral power, 100 at 560 nm, 10 nm.",
-           "Source: Academy TB-2018-001, CIE 15:2018 daylight components (through colour-science)."],
-          [pair for pair in zip(table.wavelengths, table.values) if pair[0] % 10 == 0])
+          ["White of the Academy Color Encoding System: CIE daylight of 6000 K.",
+           "Relative spectral power, 100 at 560 nm, 10 nm.",
+           "Source: Academy TB-2018-001; daylight components of CIE 15:2018 (through colour-science)."],
+          [(x, daylight[x]) for x in range(300, 831, 10)], decimals=4)
 
 
 def write_glasses():
@@ -139,6 +142,9 @@ def write_metals():
             lines = (folder / f"{metal}.{part}.spd").read_text().splitlines()
             pairs = [tuple(map(float, line.split())) for line in lines if line.strip() and not line.startswith("#")]
             pairs, notes = extended([pair for pair in pairs if 290 <= pair[0] <= 900])
+            if metal == "TiO2":
+                notes += ["luxpop.com calls these values ordinary, but they are of the extraordinary ray (Devore 1951:",
+                          "n = 2.909 at 589.3 nm, 2.613 for the ordinary ray). pbrt-v4 has the same numbers."]
             write(f"metal-{metal}-{part}",
                   [f"{symbol} of the complex refractive index n + ik of {title}, room temperature.",
                    f"Source: {metal_source(metal)}, through the luxpop.com tables in Mitsuba 3."] + notes,
@@ -148,7 +154,7 @@ def write_metals():
 def metal_source(metal):
     if metal in ("MgO", "TiO2"):
         return "E. D. Palik (ed.), Handbook of Optical Constants of Solids (1985-1998)"
-    return "tabulated by photon energy every 0.05 eV, after handbook data"
+    return "0.05 eV grid of photon energies, after E. D. Palik (ed.), Handbook of Optical Constants of Solids (1985)"
 
 
 def write_brass():

@@ -21,8 +21,9 @@ struct TriangleSoup {
 };
 
 /// Builds with Embree's builder (rtcBuildBVH), collapsed to 8 children and 8-triangle blocks by dynamic programming
-/// (Ylitie et al. 2017), boxes padded so that watertight traversal never misses. Works for zero triangles.
-/// Throws Error if Embree fails.
-Bvh build_bvh(const TriangleSoup& triangles);
+/// (Ylitie et al. 2017), boxes padded so that watertight traversal never misses. Works for zero triangles. The result
+/// does not depend on `threads` (0: as many as there are cores). Throws Error if Embree fails or if a coordinate is not
+/// finite or beyond ±1e15.
+Bvh build_bvh(const TriangleSoup& triangles, unsigned threads = 0);
 
 } // namespace tristim

@@ -1,6 +1,6 @@
 #include "scene/tokenizer.h"
 
-#include "base/read_file.h"
+#include "meshes/read_file.h"
 
 namespace tristim {
 
@@ -38,15 +38,32 @@ std::string Tokenizer::read_string(const SourceLocation& where) {
             if (++position_ == source_.size())
                 break;
             switch (source_[position_]) {
-            case 'b': c = '\b'; break;
-            case 'f': c = '\f'; break;
-            case 'n': c = '\n'; break;
-            case 'r': c = '\r'; break;
-            case 't': c = '\t'; break;
-            case '\\': c = '\\'; break;
-            case '\'': c = '\''; break;
-            case '"': c = '"'; break;
-            default: fail_at(where, "unknown escape \"\\{}\" in a string.", source_[position_]);
+            case 'b':
+                c = '\b';
+                break;
+            case 'f':
+                c = '\f';
+                break;
+            case 'n':
+                c = '\n';
+                break;
+            case 'r':
+                c = '\r';
+                break;
+            case 't':
+                c = '\t';
+                break;
+            case '\\':
+                c = '\\';
+                break;
+            case '\'':
+                c = '\'';
+                break;
+            case '"':
+                c = '"';
+                break;
+            default:
+                fail_at(where, "unknown escape \"\\{}\" in a string.", source_[position_]);
             }
         }
         text += c;

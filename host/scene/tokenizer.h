@@ -11,7 +11,8 @@ namespace tristim {
 struct Token {
     enum class Kind { Word, String, OpenBracket, CloseBracket, End };
     Kind kind = Kind::End;
-    std::string text;  ///< a word (directive, number, true/false) as it stands; a string without quotes, escapes replaced
+    std::string
+        text; ///< a word (directive, number, true/false) as it stands; a string without quotes, escapes replaced
     SourceLocation where;
 };
 

@@ -26,4 +26,7 @@ const Matrix3& rgb_to_xyz_matrix();
 Rgb xyz_to_rgb(const Xyz& xyz);
 Xyz rgb_to_xyz(const Rgb& rgb);
 
+/// Linear RGB of the sRGB primaries but of another white to XYZ; the white's Y is that of RGB (1, 1, 1).
+Matrix3 rgb_to_xyz_matrix(const Xyz& white);
+
 } // namespace tristim

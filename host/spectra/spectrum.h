@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ inline constexpr double lambda_max_nm = 780.0;
 inline constexpr int lambda_bins = 400;
 
 /// A spectral distribution: a function of the wavelength in nm. Immutable and cheap to copy.
-/// The unit of the value is the user's: reflectance, refractive index, or W·m⁻²·sr⁻¹·nm⁻¹.
+/// The unit of the value is the user's: reflectance, refractive index, or W·m⁻²·sr⁻¹·nm⁻¹. By default the constant 0.
+/// Spectra that are computed from formulas (blackbody, rgb_…) are sampled every 1 nm from 360 to 830 nm.
 class Spectrum {
   public:
     /// The same value at every wavelength.
@@ -38,7 +40,8 @@ class Spectrum {
     /// Unbounded positive colour: m · sigmoid(rgb/m), m = 2 max(rgb), as pbrt-v4's RGBUnboundedSpectrum.
     static Spectrum rgb_unbounded(const std::array<double, 3>& rgb);
 
-    /// A named spectrum ("glass-BK7", "metal-Au-k", "stdillum-D65", …). Throws Error naming near matches if unknown.
+    /// A named spectrum ("glass-BK7", "metal-Au-k", "stdillum-D65", …). The illuminants ("stdillum-…", "illum-…") are
+    /// scaled to Y = 1, as in pbrt-v4. Throws Error naming near matches if unknown.
     static Spectrum named(const std::string& name);
 
     /// Reads pairs "lambda value" of a .spd file; '#' starts a comment. Throws Error with file and line.
@@ -62,8 +65,15 @@ class Spectrum {
     Spectrum scaled(double factor) const;
 
   private:
-    std::vector<double> lambda_;  // empty: constant
-    std::vector<double> value_;   // one value if constant
+    struct Samples {
+        std::vector<double> lambda_nm;
+        std::vector<double> values;
+    };
+
+    double integral(double from_nm, double to_nm) const;
+
+    std::shared_ptr<const Samples> samples_; // null: constant
+    double scale_ = 0.0;                     // of the samples; the value itself if constant
 };
 
 /// Names that Spectrum::named() knows, sorted.

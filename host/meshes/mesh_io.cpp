@@ -1,0 +1,221 @@
+#include "meshes/mesh_io.h"
+
+#include "base/error.h"
+#include "meshes/mesh_checks.h"
+#include "meshes/mesh_importer.h"
+#include "meshes/read_file.h"
+#include "meshes/triangulate.h"
+
+// MeshIO.hh makes the linker keep OpenMesh's readers, which register themselves.
+#include <OpenMesh/Core/IO/MeshIO.hh>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+namespace tristim {
+
+namespace {
+
+/// Silences OpenMesh's chatter while in scope.
+class QuietOpenMesh {
+  public:
+    QuietOpenMesh() : was_enabled_(omerr().is_enabled()) { omerr().disable(); }
+    ~QuietOpenMesh() {
+        if (was_enabled_)
+            omerr().enable();
+    }
+    QuietOpenMesh(const QuietOpenMesh&) = delete;
+    QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
+
+  private:
+    bool was_enabled_;
+};
+
+/// Vertices and faces of the header of a PLY file, to see whether the reader found them all.
+struct PlyCounts {
+    std::size_t vertices = 0;
+    std::size_t faces = 0;
+};
+
+PlyCounts check_ply_header(const std::string& path, const std::string& bytes) {
+    PlyCounts counts;
+    std::istringstream header(bytes.substr(0, bytes.find("end_header")));
+    std::string line;
+    std::getline(header, line);
+    if (line.substr(0, 3) != "ply" || bytes.find("end_header") == std::string::npos)
+        fail("{}: this is not a PLY file: it has no header from \"ply\" to \"end_header\".", path);
+    while (std::getline(header, line)) {
+        std::istringstream words(line);
+        std::string keyword, name;
+        std::size_t count = 0;
+        if (words >> keyword >> name >> count && keyword == "element") {
+            if (name == "vertex")
+                counts.vertices = count;
+            else if (name == "face")
+                counts.faces = count;
+        }
+    }
+    return counts;
+}
+
+void import_ply(const std::string& path, const std::string& bytes, MeshImporter& importer) {
+    const PlyCounts counts = check_ply_header(path, bytes);
+    std::istringstream stream(bytes, std::ios::binary);
+    // The reader does not look whether its reads succeed; the exception stops it where the file ends or is no number.
+    stream.exceptions(std::ios::failbit | std::ios::badbit);
+    OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
+    bool whole = false;
+    try {
+        whole = OpenMesh::IO::IOManager().read(stream, "ply", importer, options);
+    } catch (const std::ios::failure&) {
+        whole = false;
+    }
+    if (!whole || importer.positions.size() != counts.vertices || importer.faces.size() != counts.faces)
+        fail("{}: the PLY file is cut short or malformed: {} of {} vertices and {} of {} faces could be read.", path,
+             importer.positions.size(), counts.vertices, importer.faces.size(), counts.faces);
+}
+
+std::size_t import_obj(const std::string& path, const std::string& bytes, MeshImporter& importer) {
+    const ObjCounts counts = check_obj(path, bytes);
+    std::istringstream stream(bytes);
+    OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
+    if (!OpenMesh::IO::IOManager().read(stream, "obj", importer, options) ||
+        importer.positions.size() != counts.vertices)
+        fail("{}: the OBJ file is malformed.", path);
+    // OpenMesh leaves out faces with fewer than three different vertices.
+    return counts.faces - importer.faces.size();
+}
+
+void check_vertices(const std::string& path, const MeshImporter& importer, int first_index) {
+    for (std::size_t i = 0; i < importer.positions.size(); ++i) {
+        const Imath::V3f& p = importer.positions[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            fail("{}: the vertex {} is not finite: ({}, {}, {}).", path, i + static_cast<std::size_t>(first_index), p.x,
+                 p.y, p.z);
+    }
+    for (std::size_t f = 0; f < importer.faces.size(); ++f) {
+        for (const auto& corner : importer.faces[f]) {
+            if (corner.vertex < 0 || static_cast<std::size_t>(corner.vertex) >= importer.positions.size())
+                fail("{}: the vertex index {} of face {} is out of range: the mesh has {} vertices.", path,
+                     corner.vertex, f, importer.positions.size());
+            if (corner.normal && !std::isfinite(corner.normal->length2()))
+                fail("{}: the normal of vertex {} is not finite.", path, corner.vertex + first_index);
+        }
+    }
+}
+
+/// Faces without repeated vertices; the ones left with fewer than three vanish.
+std::vector<std::vector<MeshImporter::Corner>> proper_faces(const MeshImporter& importer) {
+    std::vector<std::vector<MeshImporter::Corner>> result;
+    for (const auto& face : importer.faces) {
+        std::vector<MeshImporter::Corner> corners;
+        std::set<int> seen;
+        for (const auto& corner : face) {
+            if (seen.insert(corner.vertex).second)
+                corners.push_back(corner);
+        }
+        if (corners.size() >= 3)
+            result.push_back(std::move(corners));
+    }
+    return result;
+}
+
+/// Gives every (vertex, normal) pair an output vertex of its own.
+class VertexTable {
+  public:
+    explicit VertexTable(MeshFile& mesh) : mesh_(mesh) {}
+
+    std::uint32_t index(const MeshImporter& importer, const MeshImporter::Corner& corner, bool with_normals) {
+        const Imath::V3f normal = corner.normal.value_or(Imath::V3f(0.0f));
+        const auto [it, is_new] = table_.try_emplace(std::tuple(corner.vertex, normal.x, normal.y, normal.z),
+                                                     static_cast<std::uint32_t>(mesh_.positions.size()));
+        if (is_new) {
+            mesh_.positions.push_back(importer.positions[static_cast<std::size_t>(corner.vertex)]);
+            if (with_normals)
+                mesh_.normals.push_back(normal);
+        }
+        return it->second;
+    }
+
+  private:
+    MeshFile& mesh_;
+    std::map<std::tuple<int, float, float, float>, std::uint32_t> table_;
+};
+
+/// Corners without a normal in a mesh that has some get their face's, so that they stay flat.
+void complete_normals(const MeshImporter& importer, std::vector<MeshImporter::Corner>& face) {
+    Imath::V3f normal(0.0f);
+    const Imath::V3f& origin = importer.positions[static_cast<std::size_t>(face[0].vertex)];
+    for (std::size_t i = 1; i + 1 < face.size(); ++i)
+        normal += (importer.positions[static_cast<std::size_t>(face[i].vertex)] - origin)
+                      .cross(importer.positions[static_cast<std::size_t>(face[i + 1].vertex)] - origin);
+    for (auto& corner : face) {
+        if (!corner.normal)
+            corner.normal = normal;
+    }
+}
+
+MeshFile to_triangles(const MeshImporter& importer, std::vector<std::vector<MeshImporter::Corner>> faces) {
+    MeshFile mesh;
+    const bool with_normals = std::any_of(faces.begin(), faces.end(), [](const auto& face) {
+        return std::any_of(face.begin(), face.end(), [](const auto& corner) { return corner.normal.has_value(); });
+    });
+    VertexTable table(mesh);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        if (with_normals)
+            complete_normals(importer, faces[f]);
+        std::vector<std::uint32_t> indices;
+        std::vector<Imath::V3f> corners;
+        for (const auto& corner : faces[f]) {
+            indices.push_back(table.index(importer, corner, with_normals));
+            corners.push_back(mesh.positions[indices.back()]);
+        }
+        for (const auto& [a, b, c] : triangulate(corners)) {
+            mesh.triangles.push_back({indices[a], indices[b], indices[c]});
+            mesh.faces.push_back(static_cast<std::uint32_t>(f));
+        }
+    }
+    return mesh;
+}
+
+Faces vertex_lists(const std::vector<std::vector<MeshImporter::Corner>>& faces) {
+    Faces lists;
+    for (const auto& face : faces) {
+        std::vector<int>& list = lists.emplace_back();
+        for (const auto& corner : face)
+            list.push_back(corner.vertex);
+    }
+    return lists;
+}
+
+} // namespace
+
+MeshFile read_mesh(const std::string& path, MeshFormat format) {
+    const std::string bytes = read_whole_file(path);
+    const QuietOpenMesh quiet;
+    const bool is_obj = format == MeshFormat::Obj;
+    const int first_index = is_obj ? 1 : 0;
+    MeshImporter importer(is_obj);
+    std::size_t left_out = 0;
+    if (is_obj)
+        left_out = import_obj(path, bytes, importer);
+    else
+        import_ply(path, bytes, importer);
+    check_vertices(path, importer, first_index);
+
+    std::vector<std::vector<MeshImporter::Corner>> faces = proper_faces(importer);
+    left_out += importer.faces.size() - faces.size();
+    if (faces.empty())
+        fail("{}: the mesh is empty: it has {} vertices and no face of three different ones.", path,
+             importer.positions.size());
+    check_manifold(path, vertex_lists(faces), importer.positions.size(), first_index);
+    MeshFile mesh = to_triangles(importer, std::move(faces));
+    mesh.degenerate_faces = static_cast<int>(left_out);
+    return mesh;
+}
+
+} // namespace tristim

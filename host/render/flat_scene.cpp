@@ -1,0 +1,251 @@
+#include "render/flat_scene.h"
+
+#include "base/error.h"
+#include "spectra/colour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tristim {
+namespace {
+
+using std::numbers::pi;
+
+void store(const V3d& v, float& x, float& y, float& z) {
+    x = static_cast<float>(v.x);
+    y = static_cast<float>(v.y);
+    z = static_cast<float>(v.z);
+}
+
+/// pbrt's perspective camera as the plane of directions that SceneConstants describes.
+void place_camera(const Camera& camera, int width, int height, SceneConstants& c) {
+    const double aspect = static_cast<double>(width) / height;
+    std::array<double, 4> window = aspect > 1.0 ? std::array{-aspect, aspect, -1.0, 1.0}
+                                                : std::array{-1.0, 1.0, -1.0 / aspect, 1.0 / aspect};
+    if (camera.screen_window)
+        window = *camera.screen_window;
+    const double scale = std::tan(camera.fov_degrees * pi / 360.0);
+    const auto to_world = [&camera](const V3d& v) {
+        V3d result;
+        camera.camera_to_world.multDirMatrix(v, result);
+        return result;
+    };
+    const V3d right = to_world({1.0, 0.0, 0.0});
+    const V3d up = to_world({0.0, 1.0, 0.0});
+    const V3d corner = to_world({window[0] * scale, window[3] * scale, 1.0});
+    V3d origin;
+    camera.camera_to_world.multVecMatrix(V3d(0.0), origin);
+
+    store(origin, c.camera_x, c.camera_y, c.camera_z);
+    store(corner, c.corner_x, c.corner_y, c.corner_z);
+    store(right * ((window[1] - window[0]) * scale / width), c.right_x, c.right_y, c.right_z);
+    store(up * ((window[2] - window[3]) * scale / height), c.down_x, c.down_y, c.down_z);
+    store(right, c.lens_right_x, c.lens_right_y, c.lens_right_z);
+    store(up, c.lens_up_x, c.lens_up_y, c.lens_up_z);
+    c.lens_radius = static_cast<float>(camera.lens_radius);
+    c.focal_distance = static_cast<float>(camera.focal_distance);
+    c.image_width = width;
+    c.image_height = height;
+}
+
+void add_materials(const Scene& scene, FlatScene& flat) {
+    using Use = SpectrumTable::Use;
+    for (const Material& material : scene.materials) {
+        SurfaceMaterial m{};
+        switch (material.kind) {
+        case Material::Kind::Diffuse:
+            m.kind = MATERIAL_DIFFUSE;
+            m.reflectance = flat.spectra.add(material.reflectance, Use::Reflectance);
+            break;
+        case Material::Kind::Dielectric:
+            m.kind = MATERIAL_DIELECTRIC;
+            m.eta = flat.spectra.add(material.eta, Use::Index);
+            m.dispersive = material.eta.is_constant() ? 0 : 1;
+            break;
+        case Material::Kind::Conductor:
+            m.kind = MATERIAL_CONDUCTOR;
+            m.eta = flat.spectra.add(material.eta, Use::Index);
+            m.k = flat.spectra.add(material.k, Use::Index);
+            break;
+        }
+        flat.materials.push_back(m);
+    }
+}
+
+/// Adds a shape's triangles; `area_light` and its spectrum's row apply if the shape emits.
+void add_triangles(const Shape& shape, const Light* area_light, int spectrum, FlatScene& flat) {
+    for (const auto& corners : shape.mesh.triangles) {
+        const V3f v0 = shape.mesh.positions[corners[0]];
+        const V3f v1 = shape.mesh.positions[corners[1]];
+        const V3f v2 = shape.mesh.positions[corners[2]];
+        const V3d edge1 = V3d(v1) - V3d(v0);
+        const V3d edge2 = V3d(v2) - V3d(v0);
+        const V3d cross = edge1.cross(edge2);
+        const V3d normal = cross.normalized();
+
+        Triangle t{};
+        store(V3d(v0), t.v0_x, t.v0_y, t.v0_z);
+        store(edge1, t.edge1_x, t.edge1_y, t.edge1_z);
+        store(edge2, t.edge2_x, t.edge2_y, t.edge2_z);
+        store(normal, t.normal_x, t.normal_y, t.normal_z);
+        t.material = shape.material;
+        t.light = -1;
+        t.normals = -1;
+        if (!shape.mesh.normals.empty()) {
+            t.normals = static_cast<int>(flat.normals.size());
+            for (const std::uint32_t corner : corners) {
+                const V3f n = shape.mesh.normals[corner];
+                flat.normals.insert(flat.normals.end(), {n.x, n.y, n.z});
+            }
+        }
+        if (area_light != nullptr) {
+            SceneLight light{};
+            light.kind = LIGHT_AREA;
+            light.spectrum = spectrum;
+            light.scale = static_cast<float>(area_light->scale);
+            light.two_sided = area_light->two_sided ? 1 : 0;
+            light.area = static_cast<float>(0.5 * cross.length());
+            store(V3d(v0), light.position_x, light.position_y, light.position_z);
+            store(normal, light.direction_x, light.direction_y, light.direction_z);
+            store(edge1, light.edge1_x, light.edge1_y, light.edge1_z);
+            store(edge2, light.edge2_x, light.edge2_y, light.edge2_z);
+            t.light = static_cast<int>(flat.lights.size());
+            flat.lights.push_back(light);
+        }
+        flat.triangles.push_back(t);
+        flat.soup.v0.push_back(v0);
+        flat.soup.v1.push_back(v1);
+        flat.soup.v2.push_back(v2);
+    }
+}
+
+void bound(FlatScene& flat) {
+    V3d low(0.0), high(0.0);
+    bool first = true;
+    for (const auto* corner : {&flat.soup.v0, &flat.soup.v1, &flat.soup.v2}) {
+        for (const V3f& v : *corner) {
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis] = first ? v[axis] : std::min(low[axis], static_cast<double>(v[axis]));
+                high[axis] = first ? v[axis] : std::max(high[axis], static_cast<double>(v[axis]));
+            }
+            first = false;
+        }
+    }
+    SceneConstants& c = flat.constants;
+    store(0.5 * (low + high), c.centre_x, c.centre_y, c.centre_z);
+    if (first)
+        high = V3d(1.0); // nothing but an infinite light: any sphere will do
+    // A little more than the half diagonal, so that rays from the sphere start outside of every triangle.
+    c.radius = static_cast<float>(0.5 * (high - low).length() * 1.0001);
+}
+
+SceneLight flatten_light(const Light& light, int spectrum) {
+    SceneLight l{};
+    l.spectrum = spectrum;
+    l.scale = static_cast<float>(light.scale);
+    store(light.position, l.position_x, l.position_y, l.position_z);
+    store(light.direction, l.direction_x, l.direction_y, l.direction_z);
+    l.cos_total_width = static_cast<float>(light.cos_total_width);
+    l.cos_falloff_start = static_cast<float>(light.cos_falloff_start);
+    switch (light.kind) {
+    case Light::Kind::Point:
+        l.kind = LIGHT_POINT;
+        break;
+    case Light::Kind::Spot:
+        l.kind = LIGHT_SPOT;
+        break;
+    case Light::Kind::Distant:
+        l.kind = LIGHT_DISTANT;
+        break;
+    case Light::Kind::Infinite:
+        l.kind = LIGHT_INFINITE;
+        break;
+    case Light::Kind::Area:
+        l.kind = LIGHT_AREA;
+        break;
+    }
+    return l;
+}
+
+/// The power of a light over its spectrum, as kernels/lights.h emits it.
+double geometric_power(const SceneLight& light, double scene_radius) {
+    const double disc = pi * scene_radius * scene_radius;
+    switch (light.kind) {
+    case LIGHT_POINT:
+        return 4.0 * pi * light.scale;
+    case LIGHT_SPOT:
+        return 2.0 * pi * light.scale *
+               ((1.0 - light.cos_falloff_start) + 0.5 * (light.cos_falloff_start - light.cos_total_width));
+    case LIGHT_DISTANT:
+        return disc * light.scale;
+    case LIGHT_INFINITE:
+        return 4.0 * pi * disc * light.scale;
+    default:
+        return pi * light.area * light.scale * (light.two_sided != 0 ? 2.0 : 1.0);
+    }
+}
+
+/// Chooses lights in proportion to the Y of their power. luminances[row] is the Y of spectrum `row`.
+void weigh_lights(const Scene& scene, const std::vector<double>& luminances, FlatScene& flat) {
+    std::vector<double> powers;
+    double total = 0.0;
+    for (const SceneLight& light : flat.lights) {
+        powers.push_back(geometric_power(light, flat.constants.radius) *
+                         luminances[static_cast<std::size_t>(light.spectrum)]);
+        total += powers.back();
+    }
+    if (!(total > 0.0) || !std::isfinite(total))
+        fail("{}: the lights emit nothing that is visible", scene.path);
+    flat.light_cdf.push_back(0.0F);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+        sum += powers[i];
+        flat.lights[i].probability = static_cast<float>(powers[i] / total);
+        flat.light_cdf.push_back(static_cast<float>(sum / total));
+    }
+    flat.light_cdf.back() = 1.0F;
+}
+
+} // namespace
+
+FlatScene flatten_scene(const Scene& scene, int width, int height, const Region& region) {
+    FlatScene flat;
+    add_materials(scene, flat);
+
+    std::vector<int> rows;
+    std::vector<double> luminances(static_cast<std::size_t>(flat.spectra.rows()), 0.0);
+    for (const Light& light : scene.lights) {
+        rows.push_back(flat.spectra.add(light.emission, SpectrumTable::Use::Emission));
+        luminances.push_back(spectrum_to_xyz(light.emission)[1]);
+    }
+    SceneConstants& c = flat.constants;
+    c.infinite_light = -1;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const Light::Kind kind = scene.lights[i].kind;
+        if (kind == Light::Kind::Area)
+            continue;
+        if (kind == Light::Kind::Infinite) {
+            if (c.infinite_light >= 0)
+                fail("{}: more than one infinite light; add their radiances to one", scene.path);
+            c.infinite_light = static_cast<int>(flat.lights.size());
+        }
+        flat.lights.push_back(flatten_light(scene.lights[i], rows[i]));
+    }
+    for (const Shape& shape : scene.shapes) {
+        const bool emits = shape.area_light >= 0;
+        const auto light = static_cast<std::size_t>(std::max(shape.area_light, 0));
+        add_triangles(shape, emits ? &scene.lights[light] : nullptr, emits ? rows[light] : -1, flat);
+    }
+    bound(flat);
+    weigh_lights(scene, luminances, flat);
+    place_camera(scene.camera, width, height, c);
+    c.light_count = static_cast<int>(flat.lights.size());
+    c.region_x = region.x;
+    c.region_y = region.y;
+    c.region_width = region.width;
+    c.region_height = region.height;
+    return flat;
+}
+
+} // namespace tristim

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "bvh/bvh.h"
+#include "render/spectrum_table.h"
+#include "scene/scene.h"
+#include "shared_types.h"
+
+#include <vector>
+
+namespace tristim {
+
+/// The part of an image to render, in pixels: [x, x+width) × [y, y+height).
+struct Region {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+    int pixels() const { return width * height; }
+};
+
+/// A scene in the arrays that the kernels read.
+struct FlatScene {
+    SceneConstants constants{};
+    TriangleSoup soup;                ///< for build_bvh
+    std::vector<Triangle> triangles;  ///< same order
+    std::vector<float> normals;       ///< nine floats for each triangle that has vertex normals
+    std::vector<SurfaceMaterial> materials;
+    std::vector<SceneLight> lights;  ///< an area light becomes one for each of its triangles
+    std::vector<float> light_cdf;    ///< lights.size() + 1 values, by power
+    SpectrumTable spectra;
+};
+
+/// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no light
+/// within the visible range.
+FlatScene flatten_scene(const Scene& scene, int width, int height, const Region& region);
+
+} // namespace tristim

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "render/flat_scene.h"
+#include "render/method.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tristim {
+
+/// How a scene is rendered; the scene's own settings fill what the user leaves open (resolve_options).
+struct RenderOptions {
+    Method method;
+    bool random_sequence = false;    ///< the paper's plain random wavelengths instead of the stratified sequence
+    int width = 0;
+    int height = 0;
+    Region region;
+    int photons_per_pass = 0;        ///< photon paths
+    int max_depth = 0;               ///< vertices of a path
+    std::optional<double> radius;    ///< initial search radius, scene units; none: a pilot pass measures it per pixel
+    std::uint32_t seed = 0;
+    bool direct_photons = false;     ///< photons count from their first hit, direct light is not sampled
+    bool statistics_radius = false;  ///< Hachisuka et al. 2008's statistics of each pixel
+    bool fast_math = false;
+    std::string dump_kernels;        ///< folder for the programs as built, or empty
+    bool record_rays = false;        ///< keep every ray of the last pass, for bench-pass
+};
+
+inline constexpr int default_photons_per_pass = 65536;
+inline constexpr int default_max_depth = 16;
+
+/// Options with the scene's own resolution, photons, depth, radius and seed.
+RenderOptions options_from_scene(const RenderSettings& settings);
+
+/// Throws Error for sizes, counts or a region that cannot be rendered.
+void check_options(const RenderOptions& options);
+
+} // namespace tristim

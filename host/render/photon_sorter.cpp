@@ -1,0 +1,95 @@
+#include "render/photon_sorter.h"
+
+namespace tristim {
+namespace {
+
+/// Pieces that the pairs are sorted in, one work-item each. The result does not depend on it.
+std::uint32_t sort_blocks(const DeviceInfo& info) {
+    constexpr std::uint32_t blocks_per_unit = 4; // evens out threads that are held up
+    return blocks_per_unit * info.compute_units;
+}
+
+} // namespace
+
+PhotonSorter::PhotonSorter(const Device& device, const Macros& macros, const BuildOptions& options, int radix_bits)
+    : radix_bits_(radix_bits), blocks_(sort_blocks(device.info)), summary_(device, "photon summary", 2),
+      histogram_(device, "sort histogram", (std::size_t{1} << radix_bits) * blocks_),
+      bucket_begin_(device, "bucket ranges", (std::size_t{1} << (2 * radix_bits)) + 1) {
+    const ::cl::Program program = build_program(device, "photon_grid.cl", macros, options);
+    offsets_ = ::cl::Kernel(program, "photon_offsets");
+    keys_ = ::cl::Kernel(program, "photon_keys");
+    count_ = ::cl::Kernel(program, "sort_count");
+    scan_ = ::cl::Kernel(program, "sort_scan");
+    scatter_ = ::cl::Kernel(program, "sort_scatter");
+    ranges_ = ::cl::Kernel(program, "bucket_ranges");
+}
+
+void PhotonSorter::allocate(const Device& device, std::uint32_t items, std::uint32_t capacity) {
+    items_ = items;
+    capacity_ = capacity;
+    const std::size_t photons = std::size_t{items} * capacity;
+    item_offsets_ = Buffer<std::uint32_t>(device, "photon offsets", items + 1);
+    pairs_ = Buffer<cl_uint2>(device, "photon keys", photons);
+    other_pairs_ = Buffer<cl_uint2>(device, "photon keys, other half", photons);
+}
+
+void PhotonSorter::count(const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue) {
+    offsets_.setArg(0, item_counts.cl());
+    offsets_.setArg(1, items_);
+    offsets_.setArg(2, capacity_);
+    offsets_.setArg(3, item_offsets_.cl());
+    offsets_.setArg(4, summary_.cl());
+    enqueue(offsets_, 1);
+}
+
+PhotonSorter::Summary PhotonSorter::summary(const Device& device) const {
+    const std::vector<std::uint32_t> values = summary_.read(device);
+    return {values[0], values[1]};
+}
+
+void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Photon>& photons,
+                        const Buffer<std::uint32_t>& largest_radius, std::uint32_t photon_count,
+                        const Enqueue& enqueue) {
+    keys_.setArg(0, constants.cl());
+    keys_.setArg(1, photons.cl());
+    keys_.setArg(2, capacity_);
+    keys_.setArg(3, item_offsets_.cl());
+    keys_.setArg(4, largest_radius.cl());
+    keys_.setArg(5, pairs_.cl());
+    enqueue(keys_, items_);
+    for (const int shift : {0, radix_bits_}) {
+        const Buffer<cl_uint2>& from = shift == 0 ? pairs_ : other_pairs_;
+        const Buffer<cl_uint2>& to = shift == 0 ? other_pairs_ : pairs_;
+        count_.setArg(0, from.cl());
+        count_.setArg(1, summary_.cl());
+        count_.setArg(2, static_cast<cl_uint>(shift));
+        count_.setArg(3, histogram_.cl());
+        enqueue(count_, blocks_);
+        scan_.setArg(0, blocks_);
+        scan_.setArg(1, histogram_.cl());
+        enqueue(scan_, 1);
+        scatter_.setArg(0, from.cl());
+        scatter_.setArg(1, summary_.cl());
+        scatter_.setArg(2, static_cast<cl_uint>(shift));
+        scatter_.setArg(3, histogram_.cl());
+        scatter_.setArg(4, to.cl());
+        enqueue(scatter_, blocks_);
+    }
+    ranges_.setArg(0, pairs_.cl());
+    ranges_.setArg(1, summary_.cl());
+    ranges_.setArg(2, bucket_begin_.cl());
+    enqueue(ranges_, std::size_t{photon_count} + 1);
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> PhotonSorter::sizes() const {
+    std::vector<std::pair<std::string, std::uint64_t>> sizes;
+    const auto add = [&sizes](const auto& buffer) { sizes.emplace_back(buffer.name(), buffer.bytes()); };
+    add(item_offsets_);
+    add(histogram_);
+    add(bucket_begin_);
+    add(pairs_);
+    add(other_pairs_);
+    return sizes;
+}
+
+} // namespace tristim

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "opencl/buffer.h"
+#include "opencl/program.h"
+#include "shared_types.h"
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace tristim {
+
+/// Sorts photons into the hash grid (kernels/photon_grid.cl): pairs of bucket and photon in ascending, stable order, and where
+/// each bucket begins.
+class PhotonSorter {
+  public:
+    PhotonSorter() = default;
+
+    /// Builds the kernels for a device; radix_bits as RADIX_BITS of kernels/config.h.
+    PhotonSorter(const Device& device, const Macros& macros, const BuildOptions& options, int radix_bits);
+
+    /// Room for `items` work-items of photon_pass with `capacity` photons each.
+    void allocate(const Device& device, std::uint32_t items, std::uint32_t capacity);
+
+    using Enqueue = std::function<void(const ::cl::Kernel&, std::size_t items)>;
+
+    /// After photon_pass: counts its photons (item_counts), on the device.
+    void count(const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue);
+
+    struct Summary {
+        std::uint32_t photons;        ///< in all
+        std::uint32_t most_per_item;  ///< that one item would have stored; more than the capacity: some are missing
+    };
+    /// What count() found; waits for the device.
+    Summary summary(const Device& device) const;
+
+    /// Sorts `photons` of them by cells of twice the largest radius.
+    void sort(const Buffer<SceneConstants>& constants, const Buffer<Photon>& photons,
+              const Buffer<std::uint32_t>& largest_radius, std::uint32_t photon_count, const Enqueue& enqueue);
+
+    const Buffer<cl_uint2>& pairs() const { return pairs_; }
+    const Buffer<std::uint32_t>& bucket_begin() const { return bucket_begin_; }
+    const Buffer<std::uint32_t>& item_offsets() const { return item_offsets_; }
+    std::vector<std::pair<std::string, std::uint64_t>> sizes() const;
+
+  private:
+    int radix_bits_ = 0;
+    std::uint32_t blocks_ = 0;
+    std::uint32_t items_ = 0;
+    std::uint32_t capacity_ = 0;
+    Buffer<std::uint32_t> item_offsets_;
+    Buffer<std::uint32_t> summary_;
+    Buffer<std::uint32_t> histogram_;
+    Buffer<std::uint32_t> bucket_begin_;
+    Buffer<cl_uint2> pairs_;
+    Buffer<cl_uint2> other_pairs_;
+    ::cl::Kernel offsets_;
+    ::cl::Kernel keys_;
+    ::cl::Kernel count_;
+    ::cl::Kernel scan_;
+    ::cl::Kernel scatter_;
+    ::cl::Kernel ranges_;
+};
+
+} // namespace tristim

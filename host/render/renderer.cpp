@@ -1,0 +1,275 @@
+#include "render/renderer.h"
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "bvh/ray_tracer.h"
+#include "opencl/errors.h"
+#include "render/pilot.h"
+#include "render/radius_schedule.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tristim {
+namespace {
+
+/// Photon paths that a work-item traces one after the other: enough to even out how many photons each stores.
+constexpr std::uint32_t paths_per_item = 64;
+/// Photons that an item has room for at first, per path; more are made as a pass needs them.
+constexpr double photons_per_path = 1.5;
+/// Rays that bench-pass can record, per pixel and photon path.
+constexpr std::size_t recorded_rays_per_path = 24;
+
+/// Two passes of the radix sort over this many bits each: about one bucket per photon.
+int radix_bits(int photons_per_pass) {
+    const int bits = std::bit_width(static_cast<unsigned>(photons_per_pass)) + 1;
+    return std::clamp((bits + 1) / 2, 4, 11);
+}
+
+Macros common_macros(const RenderOptions& options, const Effects& effects, const Bvh& bvh) {
+    Macros macros = method_macros(options.method, options.random_sequence);
+    for (const Macros& more : {effect_macros(effects), traversal_macros(bvh)})
+        macros.insert(macros.end(), more.begin(), more.end());
+    const auto flag = [](bool on) { return on ? "1" : "0"; };
+    macros.emplace_back("MAX_DEPTH", std::to_string(options.max_depth));
+    macros.emplace_back("DIRECT_PHOTONS", flag(options.direct_photons));
+    macros.emplace_back("RADIUS_STATISTICS", flag(options.statistics_radius));
+    macros.emplace_back("PATHS_PER_ITEM", std::to_string(paths_per_item));
+    macros.emplace_back("RADIX_BITS", std::to_string(radix_bits(options.photons_per_pass)));
+    macros.emplace_back("RECORD_RAYS", flag(options.record_rays));
+    return macros;
+}
+
+std::size_t rays_to_record(const RenderOptions& options) {
+    if (!options.record_rays)
+        return 0;
+    return recorded_rays_per_path *
+           (static_cast<std::size_t>(options.region.pixels()) + static_cast<std::size_t>(options.photons_per_pass));
+}
+
+} // namespace
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Device& device)
+    : device_(device), options_(options), effects_(derive_effects(scene)), layout_(wavelength_layout(options.method)) {
+    check_options(options);
+    const FlatScene flat = flatten_scene(scene, options.width, options.height, options.region);
+    scene_buffers_ = SceneBuffers(device, flat, rays_to_record(options));
+    statistics_.bvh_seconds = scene_buffers_.bvh_seconds();
+
+    sampler_table_ = Buffer<float>(device, "wavelength sampler", sampler_table(options.method));
+    spectra_ = Buffer<float>(device, "spectra", flat.spectra.values(options.method));
+    spectrum_is_smooth_ = Buffer<std::int32_t>(device, "spectrum kinds", flat.spectra.smooth());
+    spectrum_rows_ = flat.spectra.rows();
+    const auto padded = static_cast<std::size_t>(layout_.padded());
+    constexpr std::size_t rows_before_spectra = 4; // PASS_TABLE_SPECTRA of kernels/spectrum.h
+    pass_table_ = Buffer<float>(device, "pass table",
+                                (rows_before_spectra + static_cast<std::size_t>(spectrum_rows_)) * padded);
+
+    const auto pixels = static_cast<std::size_t>(options.region.pixels());
+    radius0_ = Buffer<float>(device, "initial radii", pixels);
+    visible_points_ = Buffer<VisiblePoint>(device, "visible points", pixels);
+    eye_spectra_ = Buffer<float>(device, "throughput spectra", effects_.conductor ? pixels * padded : 0);
+    largest_radius_ = Buffer<std::uint32_t>(device, "largest radius", 1);
+    gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
+    film_ = Buffer<FilmPixel>(device, "film", pixels);
+
+    const Stopwatch building;
+    build_kernels();
+    statistics_.build_kernels_seconds = building.seconds();
+
+    const auto paths = static_cast<std::uint32_t>(options.photons_per_pass);
+    photon_items_ = (paths + paths_per_item - 1) / paths_per_item;
+    item_counts_ = Buffer<std::uint32_t>(device, "photon counts", photon_items_);
+    allocate_photons(static_cast<std::uint32_t>(photons_per_path * std::min(paths, paths_per_item)));
+
+    const Stopwatch rendering;
+    if (options.radius)
+        radius0_.fill(device_, static_cast<float>(*options.radius));
+    else
+        measure_radii();
+    film_clear_.setArg(0, radius0_.cl());
+    film_clear_.setArg(1, film_.cl());
+    enqueue(Step::Film, film_clear_, pixels);
+    collect_times();
+    statistics_.render_seconds = rendering.seconds();
+}
+
+void Renderer::build_kernels() {
+    const Macros macros = common_macros(options_, effects_, scene_buffers_.bvh());
+    const BuildOptions build{options_.fast_math, options_.dump_kernels};
+    const auto kernel = [&](const char* file, const char* name) {
+        return ::cl::Kernel(build_program(device_, file, macros, build), name);
+    };
+    wavelengths_ = kernel("wavelengths.cl", "wavelengths");
+    eye_pass_ = kernel("eye_pass.cl", "eye_pass");
+    photon_pass_ = kernel("photon_pass.cl", "photon_pass");
+    sorter_ = PhotonSorter(device_, macros, build, radix_bits(options_.photons_per_pass));
+    gather_ = kernel("gather.cl", "gather");
+    // Relaxed math would undo the film's compensated sums.
+    const ::cl::Program film = build_program(device_, "film.cl", macros, {false, options_.dump_kernels});
+    film_clear_ = ::cl::Kernel(film, "film_clear");
+    film_largest_radius_ = ::cl::Kernel(film, "film_largest_radius");
+    film_add_ = ::cl::Kernel(film, "film_add");
+}
+
+void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
+    capacity_per_item_ = std::max(capacity_per_item, 1U);
+    const std::size_t photons = std::size_t{photon_items_} * capacity_per_item_;
+    const bool store_spectra = effects_.dispersion || effects_.conductor;
+    const std::size_t floats = store_spectra ? photons * static_cast<std::size_t>(layout_.padded()) : 0;
+    photons_ = Buffer<Photon>(device_, "photons", photons);
+    photon_spectra_ = Buffer<float>(device_, "photon spectra", floats);
+    sorter_.allocate(device_, photon_items_, capacity_per_item_);
+
+    statistics_.buffer_bytes = scene_buffers_.sizes();
+    const auto add = [this](const auto& buffer) {
+        statistics_.buffer_bytes.emplace_back(buffer.name(), buffer.bytes());
+        return static_cast<double>(buffer.bytes());
+    };
+    add(sampler_table_);
+    add(spectra_);
+    add(pass_table_);
+    const double pixel_bytes =
+        add(radius0_) + add(visible_points_) + add(eye_spectra_) + add(gathered_flux_) + add(film_);
+    statistics_.bytes_per_pixel = pixel_bytes / options_.region.pixels();
+    add(photons_);
+    add(photon_spectra_);
+    for (const auto& size : sorter_.sizes())
+        statistics_.buffer_bytes.push_back(size);
+    statistics_.bytes_per_photon = static_cast<double>(sizeof(Photon) + 2 * sizeof(cl_uint2)) +
+                                   (store_spectra ? static_cast<double>(sizeof(float)) * layout_.padded() : 0.0);
+}
+
+void Renderer::measure_radii() {
+    radius0_.fill(device_, 1.0F);
+    fill_wavelengths(pilot_pass);
+    trace_eye_paths(pilot_pass, 1.0F);
+    trace_photons(pilot_pass);
+    radius0_.write(device_, pilot_radii(visible_points(), options_.region.width, photons()));
+}
+
+void Renderer::render_pass(std::uint32_t pass) {
+    const Stopwatch stopwatch;
+    if (options_.record_rays)
+        scene_buffers_.clear_recorded_rays(device_);
+    fill_wavelengths(pass);
+    trace_eye_paths(pass, static_cast<float>(radius_scale(pass)));
+    trace_photons(pass);
+    sort_photons();
+    gather_photons();
+    add_to_film();
+    collect_times();
+    ++statistics_.passes;
+    statistics_.photons_emitted += static_cast<std::uint64_t>(options_.photons_per_pass);
+    statistics_.render_seconds += stopwatch.seconds();
+}
+
+void Renderer::fill_wavelengths(std::uint32_t pass) {
+    cl_uint argument = 0;
+    wavelengths_.setArg(argument++, options_.seed);
+    wavelengths_.setArg(argument++, pass);
+    wavelengths_.setArg(argument++, sampler_table_.cl());
+    wavelengths_.setArg(argument++, spectra_.cl());
+    wavelengths_.setArg(argument++, spectrum_is_smooth_.cl());
+    wavelengths_.setArg(argument++, spectrum_rows_);
+    wavelengths_.setArg(argument++, pass_table_.cl());
+    enqueue(Step::Wavelengths, wavelengths_, static_cast<std::size_t>(layout_.padded()));
+}
+
+void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
+    cl_uint argument = scene_buffers_.bind(eye_pass_, pass_table_);
+    eye_pass_.setArg(argument++, options_.seed);
+    eye_pass_.setArg(argument++, pass);
+    eye_pass_.setArg(argument++, radius0_.cl());
+    eye_pass_.setArg(argument++, scale);
+    eye_pass_.setArg(argument++, film_.cl());
+    eye_pass_.setArg(argument++, visible_points_.cl());
+    eye_pass_.setArg(argument++, eye_spectra_.cl());
+    enqueue(Step::EyePass, eye_pass_, visible_points_.size());
+
+    largest_radius_.fill(device_, 0U);
+    film_largest_radius_.setArg(0, visible_points_.cl());
+    film_largest_radius_.setArg(1, largest_radius_.cl());
+    enqueue(Step::EyePass, film_largest_radius_, visible_points_.size());
+}
+
+void Renderer::trace_photons(std::uint32_t pass) {
+    for (;;) {
+        cl_uint argument = scene_buffers_.bind(photon_pass_, pass_table_);
+        photon_pass_.setArg(argument++, options_.seed);
+        photon_pass_.setArg(argument++, pass);
+        photon_pass_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
+        photon_pass_.setArg(argument++, capacity_per_item_);
+        photon_pass_.setArg(argument++, photons_.cl());
+        photon_pass_.setArg(argument++, photon_spectra_.cl());
+        photon_pass_.setArg(argument++, item_counts_.cl());
+        enqueue(Step::PhotonPass, photon_pass_, photon_items_);
+        sorter_.count(item_counts_, [this](const ::cl::Kernel& k, std::size_t n) { enqueue(Step::Grid, k, n); });
+        const std::uint32_t needed = sorter_.summary(device_).most_per_item;
+        if (needed <= capacity_per_item_)
+            return;
+        allocate_photons(needed + needed / 4);
+    }
+}
+
+void Renderer::sort_photons() {
+    const std::uint32_t photons = sorter_.summary(device_).photons;
+    statistics_.photons_stored += photons;
+    sorter_.sort(scene_buffers_.constants(), photons_, largest_radius_, photons,
+                 [this](const ::cl::Kernel& kernel, std::size_t items) { enqueue(Step::Grid, kernel, items); });
+}
+
+void Renderer::gather_photons() {
+    cl_uint argument = 0;
+    for (const ::cl::Buffer* buffer :
+         {&scene_buffers_.constants().cl(), &pass_table_.cl(), &visible_points_.cl(), &eye_spectra_.cl(),
+          &photons_.cl(), &photon_spectra_.cl(), &sorter_.pairs().cl(), &sorter_.bucket_begin().cl(),
+          &largest_radius_.cl()})
+        gather_.setArg(argument++, *buffer);
+    gather_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
+    gather_.setArg(argument++, gathered_flux_.cl());
+    enqueue(Step::Gather, gather_, visible_points_.size());
+}
+
+void Renderer::add_to_film() {
+    film_add_.setArg(0, visible_points_.cl());
+    film_add_.setArg(1, gathered_flux_.cl());
+    film_add_.setArg(2, static_cast<float>(radius_alpha));
+    film_add_.setArg(3, film_.cl());
+    enqueue(Step::Film, film_add_, film_.size());
+}
+
+void Renderer::enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items) {
+    ::cl::Event event;
+    device_.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(items), ::cl::NullRange, nullptr, &event);
+    events_.emplace_back(step, event);
+}
+
+void Renderer::collect_times() {
+    device_.queue.finish();
+    for (const auto& [step, event] : events_) {
+        const auto begin = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+        const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+        statistics_.step_seconds[static_cast<std::size_t>(step)] += 1e-9 * static_cast<double>(end - begin);
+    }
+    events_.clear();
+}
+
+FilmImage Renderer::film() const {
+    return develop_film(film_.read(device_), options_.width, options_.height, options_.region);
+}
+
+std::vector<Ray> Renderer::recorded_rays() const { return scene_buffers_.recorded_rays(device_); }
+
+std::vector<Photon> Renderer::photons() const {
+    const std::vector<Photon> stored = photons_.read(device_);
+    const std::vector<std::uint32_t> offsets = sorter_.item_offsets().read(device_);
+    std::vector<Photon> photons;
+    for (std::size_t item = 0; item < photon_items_; ++item) {
+        const auto begin = stored.begin() + static_cast<std::ptrdiff_t>(item * capacity_per_item_);
+        photons.insert(photons.end(), begin, begin + (offsets[item + 1] - offsets[item]));
+    }
+    return photons;
+}
+
+} // namespace tristim

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "opencl/buffer.h"
+#include "render/effects.h"
+#include "render/film.h"
+#include "render/options.h"
+#include "render/photon_sorter.h"
+#include "render/scene_buffers.h"
+#include "render/statistics.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace tristim {
+
+/// Renders passes of a scene on a device. The image is the mean of the passes, each of which depends on the scene, the
+/// options and its number alone, so any passes may be rendered in any order (with --radius statistics: in ascending order
+/// from 0, since radii then depend on the passes before).
+class Renderer {
+  public:
+    /// Builds tree, buffers and kernels, and measures initial radii by a pilot pass if the options give none.
+    /// Throws Error if the options cannot be rendered, a kernel does not build or the device has too little memory.
+    Renderer(const Scene& scene, const RenderOptions& options, const Device& device);
+
+    void render_pass(std::uint32_t pass);
+
+    FilmImage film() const;
+    const RenderStatistics& statistics() const { return statistics_; }
+    const RenderOptions& options() const { return options_; }
+    const Effects& effects() const { return effects_; }
+    const Device& device() const { return device_; }
+    const Bvh& bvh() const { return scene_buffers_.bvh(); }
+
+    /// The rays of the last pass, nearest-hit ones and shadow rays (Ray::unused = 1), if options().record_rays.
+    std::vector<Ray> recorded_rays() const;
+
+    /// The pass's data as the kernels left them, for tests.
+    std::vector<VisiblePoint> visible_points() const { return visible_points_.read(device_); }
+    std::vector<Photon> photons() const;
+    std::vector<float> pass_table() const { return pass_table_.read(device_); }
+    std::vector<cl_float4> gathered_flux() const { return gathered_flux_.read(device_); }
+
+  private:
+    void build_kernels();
+    void allocate_photons(std::uint32_t capacity_per_item);
+    void measure_radii();
+
+    void fill_wavelengths(std::uint32_t pass);
+    void trace_eye_paths(std::uint32_t pass, float scale);
+    void trace_photons(std::uint32_t pass);
+    void sort_photons();
+    void gather_photons();
+    void add_to_film();
+
+    void enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items);
+    void collect_times();
+
+    Device device_;
+    RenderOptions options_;
+    Effects effects_;
+    WavelengthLayout layout_;
+    SceneBuffers scene_buffers_;
+    RenderStatistics statistics_;
+    std::vector<std::pair<Step, ::cl::Event>> events_;
+
+    Buffer<float> sampler_table_;
+    Buffer<float> spectra_;
+    Buffer<std::int32_t> spectrum_is_smooth_;
+    int spectrum_rows_ = 0;
+    Buffer<float> pass_table_;
+
+    Buffer<float> radius0_;
+    Buffer<VisiblePoint> visible_points_;
+    Buffer<float> eye_spectra_;
+    Buffer<std::uint32_t> largest_radius_;
+    Buffer<cl_float4> gathered_flux_;
+    Buffer<FilmPixel> film_;
+
+    std::uint32_t photon_items_ = 0;
+    std::uint32_t capacity_per_item_ = 0;
+    Buffer<Photon> photons_;
+    Buffer<float> photon_spectra_;
+    Buffer<std::uint32_t> item_counts_;
+    PhotonSorter sorter_;
+
+    ::cl::Kernel wavelengths_;
+    ::cl::Kernel eye_pass_;
+    ::cl::Kernel photon_pass_;
+    ::cl::Kernel gather_;
+    ::cl::Kernel film_clear_;
+    ::cl::Kernel film_largest_radius_;
+    ::cl::Kernel film_add_;
+};
+
+} // namespace tristim

@@ -1,0 +1,62 @@
+#include "render/scene_buffers.h"
+
+#include "base/stopwatch.h"
+#include "render/sobol.h"
+
+#include <algorithm>
+
+namespace tristim {
+
+SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::size_t recorded_rays) {
+    const Stopwatch stopwatch;
+    bvh_ = build_bvh(scene.soup);
+    bvh_seconds_ = stopwatch.seconds();
+    constants_ = Buffer<SceneConstants>(device, "scene constants", std::vector{scene.constants});
+    nodes_ = Buffer<BvhNode>(device, "BVH nodes", bvh_.nodes);
+    leaves_ = Buffer<BvhLeaf>(device, "BVH leaves", bvh_.leaves);
+    triangles_ = Buffer<Triangle>(device, "triangles", scene.triangles);
+    normals_ = Buffer<float>(device, "vertex normals", scene.normals);
+    materials_ = Buffer<SurfaceMaterial>(device, "materials", scene.materials);
+    lights_ = Buffer<SceneLight>(device, "lights", scene.lights);
+    light_cdf_ = Buffer<float>(device, "light CDF", scene.light_cdf);
+    sobol_table_ = Buffer<std::uint32_t>(device, "Sobol' table", sobol_table());
+    recorded_rays_ = Buffer<Ray>(device, "recorded rays", recorded_rays);
+    recorded_count_ = Buffer<std::uint32_t>(device, "recorded ray counts", 4);
+    clear_recorded_rays(device);
+}
+
+cl_uint SceneBuffers::bind(::cl::Kernel& kernel, const Buffer<float>& pass_table) const {
+    cl_uint index = 0;
+    for (const ::cl::Buffer* buffer :
+         {&constants_.cl(), &nodes_.cl(), &leaves_.cl(), &triangles_.cl(), &normals_.cl(), &materials_.cl(),
+          &lights_.cl(), &light_cdf_.cl(), &pass_table.cl(), &sobol_table_.cl(), &recorded_rays_.cl(),
+          &recorded_count_.cl()})
+        kernel.setArg(index++, *buffer);
+    return index;
+}
+
+void SceneBuffers::clear_recorded_rays(const Device& device) const {
+    recorded_count_.write(device, {0U, 0U, static_cast<std::uint32_t>(recorded_rays_.size()), 0U});
+}
+
+std::vector<Ray> SceneBuffers::recorded_rays(const Device& device) const {
+    const std::size_t count = recorded_count_.read(device)[3];
+    return recorded_rays_.read(device, std::min(count, recorded_rays_.size()));
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> SceneBuffers::sizes() const {
+    std::vector<std::pair<std::string, std::uint64_t>> sizes;
+    const auto add = [&sizes](const auto& buffer) { sizes.emplace_back(buffer.name(), buffer.bytes()); };
+    add(constants_);
+    add(nodes_);
+    add(leaves_);
+    add(triangles_);
+    add(normals_);
+    add(materials_);
+    add(lights_);
+    add(light_cdf_);
+    add(sobol_table_);
+    return sizes;
+}
+
+} // namespace tristim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "bvh/bvh.h"
+#include "opencl/buffer.h"
+#include "render/flat_scene.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace tristim {
+
+/// A scene on a device: the buffers behind SCENE_PARAMETERS of kernels/scene.h.
+class SceneBuffers {
+  public:
+    SceneBuffers() = default;
+
+    /// Builds the tree and uploads everything. `recorded_rays` is how many rays can be recorded, 0 for none.
+    SceneBuffers(const Device& device, const FlatScene& scene, std::size_t recorded_rays);
+
+    /// Sets the kernel's first arguments, the scene, and returns the index of the next one.
+    cl_uint bind(::cl::Kernel& kernel, const Buffer<float>& pass_table) const;
+
+    const Bvh& bvh() const { return bvh_; }
+    double bvh_seconds() const { return bvh_seconds_; }
+    const Buffer<SceneConstants>& constants() const { return constants_; }
+
+    /// Forgets recorded rays; the rays recorded since.
+    void clear_recorded_rays(const Device& device) const;
+    std::vector<Ray> recorded_rays(const Device& device) const;
+
+    std::vector<std::pair<std::string, std::uint64_t>> sizes() const;
+
+  private:
+    Bvh bvh_;
+    double bvh_seconds_ = 0.0;
+    Buffer<SceneConstants> constants_;
+    Buffer<BvhNode> nodes_;
+    Buffer<BvhLeaf> leaves_;
+    Buffer<Triangle> triangles_;
+    Buffer<float> normals_;
+    Buffer<SurfaceMaterial> materials_;
+    Buffer<SceneLight> lights_;
+    Buffer<float> light_cdf_;
+    Buffer<std::uint32_t> sobol_table_;
+    Buffer<Ray> recorded_rays_;
+    Buffer<std::uint32_t> recorded_count_;
+};
+
+} // namespace tristim

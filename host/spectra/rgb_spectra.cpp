@@ -1,0 +1,57 @@
+#include "base/error.h"
+#include "spectra/rgb_upsampling.h"
+#include "spectra/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace tristim {
+
+namespace {
+
+/// m with rgb / m in [0, 1/2]³, as in pbrt-v4, where the sigmoid is far from its ends.
+double scale_of_unbounded(const Rgb& rgb) {
+    for (const double value : rgb) {
+        if (!(value >= 0.0) || !std::isfinite(value))
+            fail("an RGB colour must be finite and not negative, not ({}, {}, {})", rgb[0], rgb[1], rgb[2]);
+    }
+    return 2.0 * std::max({rgb[0], rgb[1], rgb[2]});
+}
+
+} // namespace
+
+Spectrum Spectrum::rgb_albedo(const Rgb& rgb) {
+    for (const double value : rgb) {
+        if (!(value >= 0.0 && value <= 1.0))
+            fail("an RGB reflectance must lie in [0, 1], not ({}, {}, {})", rgb[0], rgb[1], rgb[2]);
+    }
+    return fitted_reflectance(rgb);
+}
+
+Spectrum Spectrum::rgb_unbounded(const Rgb& rgb) {
+    const double m = scale_of_unbounded(rgb);
+    return m > 0.0 ? fitted_reflectance({rgb[0] / m, rgb[1] / m, rgb[2] / m}).scaled(m) : constant(0.0);
+}
+
+Spectrum Spectrum::rgb_illuminant(const Rgb& rgb) {
+    const Spectrum colour = rgb_unbounded(rgb);
+    if (!colour.samples_)
+        return rgb_illuminant_white().scaled(colour.scale_);
+    // The D65 table is linear between multiples of 5 nm, so whole nanometres hold all its samples.
+    const Spectrum white = rgb_illuminant_white();
+    std::vector<double> lambda_nm;
+    std::vector<double> values;
+    for (const double lambda : colour.samples_->lambda_nm) {
+        lambda_nm.push_back(lambda);
+        values.push_back(colour(lambda) * white(lambda));
+    }
+    return piecewise_linear(std::move(lambda_nm), std::move(values));
+}
+
+Spectrum Spectrum::rgb_illuminant_white() {
+    return named("stdillum-D65");
+}
+
+} // namespace tristim

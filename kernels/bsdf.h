@@ -1,0 +1,69 @@
+// What a path carries, and what surfaces do to it. The file that includes this defines PATH_SPECTRUM: 1 if paths carry a
+// value for each wavelength, 0 if one value serves all of them until a dispersive surface makes the path keep one slot.
+#ifndef TRISTIM_BSDF_H
+#define TRISTIM_BSDF_H
+
+#include "optics.h"
+#include "scene.h"
+
+// Flux of a photon path or throughput of a camera path: scale · spectrum[w] for every wavelength w while slot is SLOT_ALL,
+// and scale for that wavelength alone, nothing for the others, once slot >= 0.
+typedef struct PathWeight {
+    float scale;
+    int slot;
+#if PATH_SPECTRUM
+    Spectrum spectrum;
+#endif
+} PathWeight;
+
+// From here on the path is of one wavelength. Chosen with probability 1/W, it stands for all: weight W.
+void keep_slot(PathWeight* weight, int slot) {
+#if PATH_SPECTRUM
+    weight->scale *= ((const float*)weight->spectrum.block)[slot];
+#endif
+    weight->scale *= (float)W;
+    weight->slot = slot;
+}
+
+#if HAS_DIELECTRIC
+// Reflects or refracts at a smooth dielectric, by chance in proportion to the Fresnel reflectance, so that neither changes
+// the weight; a dispersive one makes the path keep `slot` first. `radiance` says that the path runs from the camera:
+// radiance scales by (η_i/η_t)² at refraction, flux does not (Veach 1997, section 5.2). Returns the new direction.
+float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
+                          float3 direction, float u, int slot, bool radiance, PathWeight* weight) {
+#if HAS_DISPERSION
+    if (material->dispersive && weight->slot < 0)
+        keep_slot(weight, slot);
+#endif
+    const float inside_over_outside = spectrum_row(scene->pass_table, material->eta)[max(weight->slot, 0)];
+    const float eta = dot(direction, it->normal) < 0.0f ? inside_over_outside : 1.0f / inside_over_outside;
+    const float3 n = facing_normal(it, -direction);
+    const float cos_i = min(-dot(direction, n), 1.0f);
+    float cos_t;
+    if (u < fresnel_dielectric(cos_i, eta, &cos_t))
+        return reflect(direction, n);
+    if (radiance)
+        weight->scale /= eta * eta;
+    return refract(direction, n, eta, cos_i, cos_t);
+}
+#endif
+
+#if HAS_CONDUCTOR
+// Reflects at a smooth conductor; the Fresnel reflectance multiplies the weight. Returns the new direction.
+float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
+                         float3 direction, PathWeight* weight) {
+    const float3 n = facing_normal(it, -direction);
+    const float cos_i = min(-dot(direction, n), 1.0f);
+    const global float* eta = spectrum_row(scene->pass_table, material->eta);
+    const global float* k = spectrum_row(scene->pass_table, material->k);
+    if (weight->slot >= 0) {
+        weight->scale *= fresnel_conductor(cos_i, eta[weight->slot], k[weight->slot]);
+    } else {
+        for (int b = 0; b < BLOCKS; ++b)
+            weight->spectrum.block[b] *= fresnel_conductor_lanes(cos_i, vloadv(b, eta), vloadv(b, k));
+    }
+    return reflect(direction, n);
+}
+#endif
+
+#endif

@@ -1,0 +1,169 @@
+// Light sources: emission of photons and sampling of direct light. Spectra are kept apart: every quantity here is the
+// factor of the light's spectrum.
+#ifndef TRISTIM_LIGHTS_H
+#define TRISTIM_LIGHTS_H
+
+#include "scene.h"
+
+// The light whose interval of the CDF holds u in [0, 1).
+int choose_light(const Scene* scene, float u) {
+    int low = 0, high = scene->constants->light_count;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (scene->light_cdf[middle] <= u)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+float3 light_position(const global SceneLight* light) {
+    return (float3)(light->position_x, light->position_y, light->position_z);
+}
+float3 light_direction(const global SceneLight* light) {
+    return (float3)(light->direction_x, light->direction_y, light->direction_z);
+}
+float3 area_light_point(const global SceneLight* light, float2 u) {
+    const float2 b = sample_triangle(u);
+    return light_position(light) + b.x * (float3)(light->edge1_x, light->edge1_y, light->edge1_z) +
+           b.y * (float3)(light->edge2_x, light->edge2_y, light->edge2_z);
+}
+
+// A photon that leaves a light.
+typedef struct Emission {
+    float3 origin;
+    float3 direction;
+    float power;  // of the light, over the probability of choosing it: factor of its spectrum
+} Emission;
+
+// A ray that enters the scene's bounding sphere along a direction, through a point of the disc across it.
+float3 enter_scene(const Scene* scene, float3 direction, float2 u) {
+    const global SceneConstants* c = scene->constants;
+    const Frame frame = make_frame(direction);
+    const float2 d = c->radius * sample_disc(u);
+    return (float3)(c->centre_x, c->centre_y, c->centre_z) + d.x * frame.s + d.y * frame.t - c->radius * direction;
+}
+
+// Every light emits photons in proportion to its emitted radiance, so all of its photons carry the same power.
+Emission sample_emission(const Scene* scene, const global SceneLight* light, float2 u_direction, float2 u_position) {
+    Emission e;
+    e.origin = light_position(light);
+    e.direction = light_direction(light);
+    e.power = light->scale / light->probability;
+    switch (light->kind) {
+#if HAS_POINT_LIGHT
+    case LIGHT_POINT:
+        e.direction = sample_sphere(u_direction);
+        e.power *= 4.0f * PI;
+        break;
+#endif
+#if HAS_SPOT_LIGHT
+    case LIGHT_SPOT: {
+        const Frame frame = make_frame(e.direction);
+        const float cosine = sample_spot_cosine(u_direction.x, light->cos_total_width, light->cos_falloff_start);
+        e.direction = frame_to_world(&frame, direction_at_cosine(cosine, u_direction.y));
+        e.power *= spot_solid_angle(light->cos_total_width, light->cos_falloff_start);
+        break;
+    }
+#endif
+#if HAS_DISTANT_LIGHT
+    case LIGHT_DISTANT:
+        e.origin = enter_scene(scene, e.direction, u_position);
+        e.power *= PI * scene->constants->radius * scene->constants->radius;
+        break;
+#endif
+#if HAS_INFINITE_LIGHT
+    case LIGHT_INFINITE:
+        e.direction = sample_sphere(u_direction);
+        e.origin = enter_scene(scene, e.direction, u_position);
+        e.power *= 4.0f * PI * PI * scene->constants->radius * scene->constants->radius;
+        break;
+#endif
+#if HAS_AREA_LIGHT
+    case LIGHT_AREA: {
+        float3 n = e.direction;
+        e.power *= PI * light->area;
+        if (light->two_sided) {
+            e.power *= 2.0f;
+            n = u_direction.x < 0.5f ? n : -n;
+            u_direction.x = fmod(2.0f * u_direction.x, 1.0f);
+        }
+        const Frame frame = make_frame(n);
+        e.direction = frame_to_world(&frame, sample_cosine_hemisphere(u_direction));
+        e.origin = offset_ray_origin(area_light_point(light, u_position), n);
+        break;
+    }
+#endif
+    }
+    return e;
+}
+
+// Light that may reach a point straight from a light source.
+typedef struct DirectLight {
+    float3 origin;      // of the shadow ray
+    float3 direction;   // not normalised: the light is at distance t_max = 1 along it, unless it is at infinity
+    float irradiance;   // at the point with normal n, over the pdf: factor of the light's spectrum; 0 if none
+    float t_max;
+    int spectrum;
+} DirectLight;
+
+// Samples one light; n is the shading normal on the side to light.
+DirectLight sample_direct(const Scene* scene, const Interaction* it, float3 n, float u_light, float2 u) {
+    const global SceneLight* light = scene->lights + choose_light(scene, u_light);
+    DirectLight d;
+    d.spectrum = light->spectrum;
+    d.irradiance = light->scale / light->probability;
+    d.t_max = 1.0f;
+    float3 target = light_position(light);
+    switch (light->kind) {
+#if HAS_POINT_LIGHT
+    case LIGHT_POINT:
+        break;
+#endif
+#if HAS_SPOT_LIGHT
+    case LIGHT_SPOT:
+        d.irradiance *= spot_falloff(dot(normalize(it->point - target), light_direction(light)), light->cos_total_width,
+                                     light->cos_falloff_start);
+        break;
+#endif
+#if HAS_DISTANT_LIGHT
+    case LIGHT_DISTANT:
+        d.direction = -light_direction(light);
+        d.origin = leave_surface(it, d.direction);
+        d.t_max = INFINITE_DISTANCE;
+        d.irradiance *= max(dot(d.direction, n), 0.0f);
+        return d;
+#endif
+#if HAS_INFINITE_LIGHT
+    case LIGHT_INFINITE: {
+        const Frame frame = make_frame(n);
+        d.direction = frame_to_world(&frame, sample_cosine_hemisphere(u));
+        d.origin = leave_surface(it, d.direction);
+        d.t_max = INFINITE_DISTANCE;
+        d.irradiance *= PI;  // cos θ / (cos θ / π)
+        return d;
+    }
+#endif
+#if HAS_AREA_LIGHT
+    case LIGHT_AREA: {
+        target = area_light_point(light, u);
+        const float3 towards_point = normalize(it->point - target);
+        float cos_light = dot(towards_point, light_direction(light));
+        cos_light = light->two_sided ? fabs(cos_light) : cos_light;
+        d.irradiance *= max(cos_light, 0.0f) * light->area;
+        target = offset_ray_origin(target, dot(towards_point, light_direction(light)) >= 0.0f ? light_direction(light)
+                                                                                            : -light_direction(light));
+        break;
+    }
+#endif
+    }
+    const float3 towards = target - it->point;
+    const float squared = dot(towards, towards);
+    d.irradiance *= max(dot(towards, n), 0.0f) * rsqrt(squared) / squared;
+    d.origin = leave_surface(it, towards);
+    d.direction = target - d.origin;
+    return d;
+}
+
+#endif

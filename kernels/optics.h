@@ -1,0 +1,50 @@
+// Reflection and refraction at smooth interfaces.
+#ifndef TRISTIM_OPTICS_H
+#define TRISTIM_OPTICS_H
+
+#include "spectrum.h"
+
+// Fresnel reflectance of a dielectric for unpolarised light (Born & Wolf 1999, section 1.5.2). cos_i >= 0 is the cosine on
+// the incident side, eta the index of the other side over this one. *cos_t becomes the cosine beyond, 0 at total
+// reflection. sin²θ_i is formed as (1-c)(1+c), which keeps its digits at normal incidence.
+float fresnel_dielectric(float cos_i, float eta, float* cos_t) {
+    const float sin2_i = (1.0f - cos_i) * (1.0f + cos_i);
+    const float cos2_t = 1.0f - sin2_i / (eta * eta);
+    if (cos2_t <= 0.0f) {
+        *cos_t = 0.0f;
+        return 1.0f;
+    }
+    *cos_t = sqrt(cos2_t);
+    const float s = (cos_i - eta * *cos_t) / (cos_i + eta * *cos_t);
+    const float p = (eta * cos_i - *cos_t) / (eta * cos_i + *cos_t);
+    return 0.5f * (s * s + p * p);
+}
+
+// Fresnel reflectance of a conductor with index eta + ik for unpolarised light arriving from vacuum (Born & Wolf 1999,
+// section 14.4.1), for a vector of wavelengths or one.
+#define DEFINE_FRESNEL_CONDUCTOR(name, type)                                                                           \
+    type name(float cos_i, type eta, type k) {                                                                         \
+        const float cos2 = cos_i * cos_i;                                                                              \
+        const float sin2 = (1.0f - cos_i) * (1.0f + cos_i);                                                            \
+        const type difference = eta * eta - k * k - sin2;                                                              \
+        const type a2_plus_b2 = sqrt(difference * difference + 4.0f * eta * eta * k * k);                              \
+        const type a = sqrt(max(0.5f * (a2_plus_b2 + difference), (type)(0.0f)));                                      \
+        const type two_a_cos = 2.0f * cos_i * a;                                                                       \
+        const type s = (a2_plus_b2 + cos2 - two_a_cos) / (a2_plus_b2 + cos2 + two_a_cos);                              \
+        const type with_cos = cos2 * a2_plus_b2 + sin2 * sin2;                                                         \
+        const type with_sin = two_a_cos * sin2;                                                                        \
+        return 0.5f * s * (1.0f + (with_cos - with_sin) / (with_cos + with_sin));                                      \
+    }
+
+DEFINE_FRESNEL_CONDUCTOR(fresnel_conductor, float)
+DEFINE_FRESNEL_CONDUCTOR(fresnel_conductor_lanes, floatv)
+
+// direction towards the surface, n on the side it comes from.
+float3 reflect(float3 direction, float3 n) { return direction - 2.0f * dot(direction, n) * n; }
+
+// Snell's law in vector form; cos_i and cos_t as in fresnel_dielectric, without total reflection.
+float3 refract(float3 direction, float3 n, float eta, float cos_i, float cos_t) {
+    return normalize(direction / eta + (cos_i / eta - cos_t) * n);
+}
+
+#endif

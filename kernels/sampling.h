@@ -1,0 +1,110 @@
+// Maps from the unit square to directions and points, and the encoding of normals.
+#ifndef TRISTIM_SAMPLING_H
+#define TRISTIM_SAMPLING_H
+
+#define PI 3.14159265358979f
+#define INV_PI 0.318309886183791f
+
+// An orthonormal basis around a unit vector: Duff et al. 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1).
+typedef struct Frame {
+    float3 s, t, n;
+} Frame;
+
+Frame make_frame(float3 n) {
+    const float sign = copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    Frame frame;
+    frame.s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    frame.t = (float3)(b, sign + n.y * n.y * a, -n.y);
+    frame.n = n;
+    return frame;
+}
+
+float3 frame_to_world(const Frame* frame, float3 v) { return v.x * frame->s + v.y * frame->t + v.z * frame->n; }
+
+// Uniform on the unit disc, polar.
+float2 sample_disc(float2 u) {
+    float c;
+    const float s = sincos(2.0f * PI * u.y, &c);
+    return sqrt(u.x) * (float2)(c, s);
+}
+
+// About +z with pdf cos θ / π.
+float3 sample_cosine_hemisphere(float2 u) {
+    const float2 d = sample_disc(u);
+    return (float3)(d.x, d.y, sqrt(max(0.0f, 1.0f - u.x)));
+}
+
+// A direction about +z with a given cosine; u.y turns it.
+float3 direction_at_cosine(float cosine, float u) {
+    const float sine = sqrt(max(0.0f, 1.0f - cosine * cosine));
+    float c;
+    const float s = sincos(2.0f * PI * u, &c);
+    return (float3)(sine * c, sine * s, cosine);
+}
+
+float3 sample_sphere(float2 u) { return direction_at_cosine(1.0f - 2.0f * u.x, u.y); }
+
+// Uniform in a triangle: barycentrics of v1 and v2 (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
+float2 sample_triangle(float2 u) {
+    return u.x < u.y ? (float2)(0.5f * u.x, u.y - 0.5f * u.x) : (float2)(u.x - 0.5f * u.y, 0.5f * u.y);
+}
+
+// pbrt's spot light: smoothstep of the cosine between the total width (0) and the start of the falloff (1).
+float spot_falloff(float cosine, float cos_total_width, float cos_falloff_start) {
+    if (cosine >= cos_falloff_start)
+        return 1.0f;
+    if (cosine <= cos_total_width)
+        return 0.0f;
+    const float x = (cosine - cos_total_width) / (cos_falloff_start - cos_total_width);
+    return x * x * (3.0f - 2.0f * x);
+}
+
+// ∫ falloff dω over all directions, the spot's power at intensity 1: the smoothstep's mean over the cosine is one half.
+float spot_solid_angle(float cos_total_width, float cos_falloff_start) {
+    return 2.0f * PI * ((1.0f - cos_falloff_start) + 0.5f * (cos_falloff_start - cos_total_width));
+}
+
+// The cosine of a spot's photon, distributed in proportion to the falloff. The falloff part inverts the smoothstep's
+// integral x³ - x⁴/2 = u/2 by Newton's method; it converges from above, where the function is convex or nearly linear.
+float sample_spot_cosine(float u, float cos_total_width, float cos_falloff_start) {
+    const float inner = 1.0f - cos_falloff_start;
+    const float outer = 0.5f * (cos_falloff_start - cos_total_width);
+    const float cut = u * (inner + outer);
+    if (cut < inner)
+        return 1.0f - cut;
+    const float target = 0.5f * min((cut - inner) / outer, 1.0f);
+    float x = 1.0f;
+    if (target < 0.5f) {
+        x = cbrt(target) + 0.5f * target;
+        for (int i = 0; i < 5; ++i) {
+            const float value = x * x * x * (1.0f - 0.5f * x) - target;
+            const float slope = x * x * (3.0f - 2.0f * x);
+            x = clamp(x - value / max(slope, 1e-8f), 0.0f, 1.0f);
+        }
+    }
+    return cos_total_width + x * (cos_falloff_start - cos_total_width);
+}
+
+// Unit vectors in 32 bits by the octahedral map (Cigolle et al. 2014, JCGT 3(2)), 16 bits each: error below 0.04°... enough
+// to tell the sides and corners of surfaces, which is all that the normals of photons are for.
+uint pack_normal(float3 n) {
+    const float3 a = fabs(n);
+    float2 p = n.xy / (a.x + a.y + a.z);
+    if (n.z < 0.0f)
+        p = (1.0f - fabs(p.yx)) * copysign((float2)(1.0f), p);
+    const int2 q = convert_int2_rte(clamp(p, -1.0f, 1.0f) * 32767.0f);
+    return ((uint)q.x & 0xffffu) | (uint)q.y << 16;
+}
+
+float3 unpack_normal(uint packed) {
+    const float2 p = (float2)((float)as_short((ushort)(packed & 0xffffu)), (float)as_short((ushort)(packed >> 16))) *
+                     (1.0f / 32767.0f);
+    float3 n = (float3)(p.x, p.y, 1.0f - fabs(p.x) - fabs(p.y));
+    if (n.z < 0.0f)
+        n.xy = (1.0f - fabs(n.yx)) * copysign((float2)(1.0f), n.xy);
+    return normalize(n);
+}
+
+#endif

@@ -1,0 +1,108 @@
+// The scene's buffers as one argument list, and what a ray finds where it hits.
+#ifndef TRISTIM_SCENE_H
+#define TRISTIM_SCENE_H
+
+#include "bvh.h"
+#include "config.h"
+#include "rng.h"
+#include "sampling.h"
+#include "shared_types.h"
+#include "spectrum.h"
+
+typedef struct Scene {
+    const global SceneConstants* constants;
+    const global BvhNode* nodes;
+    const global BvhLeaf* leaves;
+    const global Triangle* triangles;
+    const global float* normals;
+    const global SurfaceMaterial* materials;
+    const global SceneLight* lights;
+    const global float* light_cdf;  // light_count + 1 values, from 0 to 1
+    const global float* pass_table;
+    const global uint* sobol_table;
+    global Ray* recorded_rays;      // RECORD_RAYS: rays traced so far in [0].t_max... see record_ray
+    global uint* recorded_count;
+} Scene;
+
+// Kernels that trace rays begin their parameter list with SCENE_PARAMETERS, in the order of host/render/scene_buffers.h,
+// and their body with SCENE_FROM_PARAMETERS.
+#define SCENE_PARAMETERS                                                                                               \
+    const global SceneConstants *constants, const global BvhNode *nodes, const global BvhLeaf *leaves,                 \
+        const global Triangle *triangles, const global float *normals, const global SurfaceMaterial *materials,        \
+        const global SceneLight *lights, const global float *light_cdf, const global float *pass_table,                \
+        const global uint *sobol_table, global Ray *recorded_rays, global uint *recorded_count
+#define SCENE_FROM_PARAMETERS                                                                                          \
+    const Scene scene = {constants, nodes,     leaves,     triangles,   normals,       materials,                      \
+                         lights,    light_cdf, pass_table, sobol_table, recorded_rays, recorded_count}
+
+#define INFINITE_DISTANCE 1e30f
+
+// recorded_count holds the rays of closest-hit queries in [0] and of any-hit queries in [1]; the latter are marked by
+// Ray::unused = 1. Recording past the buffer's end ([2] is its size) only counts.
+void record_ray(const Scene* scene, float3 origin, float3 direction, float t_max, int any) {
+#if RECORD_RAYS
+    const uint index = atomic_inc(scene->recorded_count + 3);
+    atomic_inc(scene->recorded_count + any);
+    if (index < scene->recorded_count[2]) {
+        const Ray ray = {origin.x, origin.y, origin.z, t_max, direction.x, direction.y, direction.z, (float)any};
+        scene->recorded_rays[index] = ray;
+    }
+#endif
+}
+
+Hit closest_hit(const Scene* scene, float3 origin, float3 direction) {
+    record_ray(scene, origin, direction, INFINITE_DISTANCE, 0);
+    return bvh_closest_hit(scene->nodes, scene->leaves, origin, direction, INFINITE_DISTANCE);
+}
+
+bool is_occluded(const Scene* scene, float3 origin, float3 direction, float t_max) {
+    record_ray(scene, origin, direction, t_max, 1);
+    return bvh_any_hit(scene->nodes, scene->leaves, origin, direction, t_max);
+}
+
+// A point of a surface.
+typedef struct Interaction {
+    float3 point;
+    float3 normal;          // unit geometric normal as the triangle stores it: out of solids, along area lights' emission
+    float3 shading_normal;  // unit, on the same side
+    int material;
+    int light;
+} Interaction;
+
+Interaction make_interaction(const Scene* scene, const Hit* hit) {
+    const global Triangle* triangle = scene->triangles + hit->triangle;
+    Interaction it;
+    it.point = (float3)(triangle->v0_x, triangle->v0_y, triangle->v0_z) +
+               hit->u * (float3)(triangle->edge1_x, triangle->edge1_y, triangle->edge1_z) +
+               hit->v * (float3)(triangle->edge2_x, triangle->edge2_y, triangle->edge2_z);
+    it.normal = (float3)(triangle->normal_x, triangle->normal_y, triangle->normal_z);
+    it.material = triangle->material;
+    it.light = triangle->light;
+    it.shading_normal = it.normal;
+#if HAS_SHADING_NORMALS
+    if (triangle->normals >= 0) {
+        const global float* n = scene->normals + triangle->normals;
+        const float3 blended = (1.0f - hit->u - hit->v) * vload3(0, n) + hit->u * vload3(1, n) + hit->v * vload3(2, n);
+        const float squared = dot(blended, blended);
+        if (squared > 0.0f)
+            it.shading_normal = blended * rsqrt(squared);
+    }
+#endif
+    return it;
+}
+
+// Where a ray leaves a surface in a direction.
+float3 leave_surface(const Interaction* it, float3 direction) {
+    return offset_ray_origin(it->point, dot(direction, it->normal) >= 0.0f ? it->normal : -it->normal);
+}
+
+// The normal to shade with, on the side that `towards` points to. A shading normal that would put `towards` on the other
+// side than the surface really has gives way to the geometric one.
+float3 facing_normal(const Interaction* it, float3 towards) {
+    const float geometric = dot(towards, it->normal);
+    const float shading = dot(towards, it->shading_normal);
+    const float3 n = geometric * shading > 0.0f ? it->shading_normal : it->normal;
+    return geometric >= 0.0f ? n : -n;
+}
+
+#endif

@@ -1,0 +1,65 @@
+// Vectors over the wavelengths of a pass, and the pass's table of spectra.
+#ifndef TRISTIM_SPECTRUM_H
+#define TRISTIM_SPECTRUM_H
+
+#include "config.h"
+
+#define CONCATENATE_(a, b) a##b
+#define CONCATENATE(a, b) CONCATENATE_(a, b)
+#define floatv CONCATENATE(float, LANES)
+#define vloadv CONCATENATE(vload, LANES)
+#define vstorev CONCATENATE(vstore, LANES)
+
+// One value per wavelength of the pass.
+typedef struct Spectrum {
+    floatv block[BLOCKS];
+} Spectrum;
+
+#if LANES == 4
+float lanes_sum(floatv v) { return (v.x + v.y) + (v.z + v.w); }
+#elif LANES == 8
+float lanes_sum(floatv v) {
+    const float4 a = v.lo + v.hi;
+    return (a.x + a.y) + (a.z + a.w);
+}
+#else
+float lanes_sum(floatv v) {
+    const float8 a = v.lo + v.hi;
+    const float4 b = a.lo + a.hi;
+    return (b.x + b.y) + (b.z + b.w);
+}
+#endif
+
+// The pass's wavelengths and every spectrum of the scene at them, filled by wavelengths.cl: rows of W_PADDED floats.
+//   row 0         λ in nm (0 for rgb bands, which have none)
+//   rows 1 to 3   weights c_w of X, Y and Z: XYZ = Σ_w c_w L(λ_w); zero in the padding
+//   row 4 + s     spectrum s of the scene
+#define PASS_TABLE_SPECTRA 4
+
+const global float* spectrum_row(const global float* pass_table, int spectrum) {
+    return pass_table + (PASS_TABLE_SPECTRA + spectrum) * W_PADDED;
+}
+
+float3 slot_weight(const global float* pass_table, int slot) {
+    return (float3)(pass_table[W_PADDED + slot], pass_table[2 * W_PADDED + slot], pass_table[3 * W_PADDED + slot]);
+}
+
+// Σ_w c_w v_w
+float3 spectrum_to_xyz(const global float* pass_table, const Spectrum* v) {
+    floatv x = 0.0f, y = 0.0f, z = 0.0f;
+    for (int b = 0; b < BLOCKS; ++b) {
+        x += vloadv(b, pass_table + W_PADDED) * v->block[b];
+        y += vloadv(b, pass_table + 2 * W_PADDED) * v->block[b];
+        z += vloadv(b, pass_table + 3 * W_PADDED) * v->block[b];
+    }
+    return (float3)(lanes_sum(x), lanes_sum(y), lanes_sum(z));
+}
+
+float spectrum_sum(const Spectrum* v) {
+    floatv sum = v->block[0];
+    for (int b = 1; b < BLOCKS; ++b)
+        sum += v->block[b];
+    return lanes_sum(sum);
+}
+
+#endif
