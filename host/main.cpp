@@ -1,1 +1,56 @@
-int main() { return 0; }
+#include "base/error.h"
+#include "commands/bench_pass.h"
+#include "commands/bench_rays.h"
+#include "commands/compare.h"
+#include "commands/devices.h"
+#include "commands/render.h"
+#include "opencl/errors.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <new>
+
+namespace {
+
+constexpr int exit_failure = 1;
+constexpr int exit_usage = 2;
+
+int run(int argc, char** argv) {
+    CLI::App app{"tristim: a spectral photon mapper on OpenCL"};
+    app.name("tristim");
+    app.set_version_flag("--version", TRISTIM_VERSION);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(36);
+    tristim::add_render_command(app);
+    tristim::add_devices_command(app);
+    tristim::add_compare_command(app);
+    tristim::add_bench_rays_command(app);
+    tristim::add_bench_pass_command(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0)
+            return app.exit(error); // --help, --version
+        const auto chosen = app.get_subcommands();
+        fmt::print(stderr, "tristim: {} (see 'tristim {}--help')\n", error.what(),
+                   chosen.empty() ? "" : chosen.front()->get_name() + " ");
+        return exit_usage;
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const tristim::Error& error) {
+        fmt::print(stderr, "tristim: {}\n", error.what());
+    } catch (const ::cl::Error& error) {
+        fmt::print(stderr, "tristim: {}\n", tristim::describe_opencl_error(error));
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "tristim: out of memory\n");
+    }
+    return exit_failure;
+}

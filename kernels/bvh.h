@@ -217,10 +217,11 @@ bool bvh_any_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, floa
     return false;
 }
 
-// The point p of a surface moved off it, to the side that the geometric normal points to, so that a ray from there does
-// not meet the surface again: by 256 units in the last place of each coordinate, or, near zero, by a fixed distance
+// The point p of a surface moved off it, to the side that the geometric normal (unit) points to, so that a ray from there
+// does not meet the surface again: by 256 units in the last place of each coordinate, or, near zero, by a fixed distance
 // (Wächter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection"). p should be interpolated from the
-// triangle's vertices with the hit's u and v, not computed from origin and t.
+// triangle's vertices with the hit's u and v, not computed from origin and t. Enough where the triangle is not much larger
+// than its distance from the scene's origin; offset_from_triangle holds for all.
 float3 offset_ray_origin(float3 p, float3 geometric_normal) {
     const float near_zero = 1.0f / 32.0f;
     const float fixed_step = 1.0f / 65536.0f;
@@ -228,6 +229,12 @@ float3 offset_ray_origin(float3 p, float3 geometric_normal) {
     const int3 outwards = select(steps, -steps, p < 0.0f);
     const float3 moved = as_float3(as_int3(p) + outwards);
     return select(moved, p + fixed_step * geometric_normal, fabs(p) < near_zero);
+}
+
+// The same for a triangle whose vertices' largest absolute coordinate is `extent`. The rounding of p and of the next
+// ray's intersection grows with it, wherever on the triangle p lies.
+float3 offset_from_triangle(float3 p, float3 geometric_normal, float extent) {
+    return offset_ray_origin(p + BVH_PADDING * extent * geometric_normal, geometric_normal);
 }
 
 #endif

@@ -154,6 +154,8 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
 #else
     point.radius = radius0[pixel] * radius_scale;
 #endif
+    point.camera_rays = ray_counts.closest;
+    point.shadow_rays = ray_counts.any;
     visible_points[pixel] = point;
 #if COLOURED_EYE
     for (int b = 0; b < BLOCKS; ++b)

@@ -24,6 +24,8 @@ kernel void film_clear(const global float* radius0, global FilmPixel* film) {
     f->rejected = 0;
     f->statistics_radius = radius0[pixel];
     f->statistics_count = 0.0f;
+    f->camera_rays = 0;
+    f->shadow_rays = 0;
 }
 
 // One work-item per pixel: the bits of the largest radius of a visible point in the pass. Positive floats are ordered as their
@@ -43,6 +45,8 @@ kernel void film_add(const global VisiblePoint* visible_points, const global flo
     const uint pixel = (uint)get_global_id(0);
     const VisiblePoint point = visible_points[pixel];
     global FilmPixel* f = film + pixel;
+    f->camera_rays += point.camera_rays;
+    f->shadow_rays += point.shadow_rays;
     float3 xyz = (float3)(point.direct_x, point.direct_y, point.direct_z);
     if (point.slot != SLOT_NONE) {
         const float4 gathered = gathered_flux[pixel];

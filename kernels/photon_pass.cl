@@ -117,9 +117,9 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path, uint path
 }
 
 // One work-item per PATHS_PER_ITEM paths. It fills photons[item·capacity …] and says in item_counts[item] how many it
-// would have stored, which may be more than the capacity.
+// would have stored, which may be more than the capacity, and adds its rays to item_rays[item].
 kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_pass, uint capacity, global Photon* photons,
-                        global float* photon_spectra, global uint* item_counts) {
+                        global float* photon_spectra, global uint* item_counts, global uint* item_rays) {
     SCENE_FROM_PARAMETERS;
     const uint item = (uint)get_global_id(0);
     PhotonStore store = {photons, photon_spectra, item * capacity, (item + 1u) * capacity};
@@ -128,4 +128,5 @@ kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_p
     for (uint path = first; path < last; ++path)
         trace_photon(&scene, seed, pass, path, paths_per_pass, &store);
     item_counts[item] = store.next - item * capacity;
+    item_rays[item] += ray_counts.closest;
 }

@@ -9,6 +9,11 @@
 #include "shared_types.h"
 #include "spectrum.h"
 
+// Rays traced, by kind of query.
+typedef struct RayCounts {
+    uint closest, any;
+} RayCounts;
+
 typedef struct Scene {
     const global SceneConstants* constants;
     const global BvhNode* nodes;
@@ -20,8 +25,9 @@ typedef struct Scene {
     const global float* light_cdf;  // light_count + 1 values, from 0 to 1
     const global float* pass_table;
     const global uint* sobol_table;
-    global Ray* recorded_rays;      // RECORD_RAYS: rays traced so far in [0].t_max... see record_ray
+    global Ray* recorded_rays;      // see record_ray
     global uint* recorded_count;
+    RayCounts* counts;              // of this work-item
 } Scene;
 
 // Kernels that trace rays begin their parameter list with SCENE_PARAMETERS, in the order of host/render/scene_buffers.h,
@@ -32,18 +38,18 @@ typedef struct Scene {
         const global SceneLight *lights, const global float *light_cdf, const global float *pass_table,                \
         const global uint *sobol_table, global Ray *recorded_rays, global uint *recorded_count
 #define SCENE_FROM_PARAMETERS                                                                                          \
-    const Scene scene = {constants, nodes,     leaves,     triangles,   normals,       materials,                      \
-                         lights,    light_cdf, pass_table, sobol_table, recorded_rays, recorded_count}
+    RayCounts ray_counts = {0, 0};                                                                                     \
+    const Scene scene = {constants, nodes,      leaves,      triangles,     normals,        materials, lights,         \
+                         light_cdf, pass_table, sobol_table, recorded_rays, recorded_count, &ray_counts}
 
 #define INFINITE_DISTANCE 1e30f
 
-// recorded_count holds the rays of closest-hit queries in [0] and of any-hit queries in [1]; the latter are marked by
-// Ray::unused = 1. Recording past the buffer's end ([2] is its size) only counts.
+// With RECORD_RAYS writes the ray to recorded_rays, shadow rays marked by Ray::unused = 1. recorded_count[0] is how many were
+// traced, [1] how many fit.
 void record_ray(const Scene* scene, float3 origin, float3 direction, float t_max, int any) {
 #if RECORD_RAYS
-    const uint index = atomic_inc(scene->recorded_count + 3);
-    atomic_inc(scene->recorded_count + any);
-    if (index < scene->recorded_count[2]) {
+    const uint index = atomic_inc(scene->recorded_count);
+    if (index < scene->recorded_count[1]) {
         const Ray ray = {origin.x, origin.y, origin.z, t_max, direction.x, direction.y, direction.z, (float)any};
         scene->recorded_rays[index] = ray;
     }
@@ -51,11 +57,13 @@ void record_ray(const Scene* scene, float3 origin, float3 direction, float t_max
 }
 
 Hit closest_hit(const Scene* scene, float3 origin, float3 direction) {
+    ++scene->counts->closest;
     record_ray(scene, origin, direction, INFINITE_DISTANCE, 0);
     return bvh_closest_hit(scene->nodes, scene->leaves, origin, direction, INFINITE_DISTANCE);
 }
 
 bool is_occluded(const Scene* scene, float3 origin, float3 direction, float t_max) {
+    ++scene->counts->any;
     record_ray(scene, origin, direction, t_max, 1);
     return bvh_any_hit(scene->nodes, scene->leaves, origin, direction, t_max);
 }

@@ -130,7 +130,7 @@ typedef struct VisiblePoint {
     int slot;
     float direct_x, direct_y, direct_z;  // XYZ of emission seen and of direct light, throughput included
     float radius;                        // of this pass's search for photons, scene units
-    int unused[2];
+    tristim_uint camera_rays, shadow_rays;  // traced for it
 } VisiblePoint;
 
 // A photon on a diffuse surface, 32 bytes. Flux is multiplied by the surface's BRDF (reflectance/π), so that the
@@ -142,7 +142,7 @@ typedef struct Photon {
     int slot;
 } Photon;
 
-// Running sums of one pixel, compensated (high and low part), 64 bytes: survive a million passes in float.
+// Running sums of one pixel, compensated (high and low part), 72 bytes: survive a million passes in float.
 typedef struct FilmPixel {
     float sum_high[3], sum_low[3];
     float square_high[3], square_low[3];
@@ -150,6 +150,7 @@ typedef struct FilmPixel {
     tristim_uint rejected;  // samples that were not finite
     float statistics_radius;  // --radius statistics: r, and the photons counted so far
     float statistics_count;
+    tristim_uint camera_rays, shadow_rays;  // traced so far
 } FilmPixel;
 
 #ifndef __OPENCL_VERSION__
@@ -157,7 +158,7 @@ static_assert(sizeof(BvhNode) == 256 && sizeof(BvhLeaf) == 320);
 static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
 static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 32);
 static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
-static_assert(sizeof(FilmPixel) == 64);
+static_assert(sizeof(FilmPixel) == 72);
 } // namespace tristim
 #endif
 

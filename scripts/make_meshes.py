@@ -54,8 +54,7 @@ def icosahedron(radius, turn_degrees, gap):
     placed = []
     for p in points:
         x, y, z = dot(p, front) * radius, dot(p, side) * radius, dot(p, up) * radius
-        # (front, side, up) is left-handed: swapping the first two makes a rotation.
-        placed.append((cos * y - sin * x, sin * y + cos * x, z))
+        placed.append((cos * x - sin * y, sin * x + cos * y, z))
     lowest = min(p[2] for p in placed)
     return [(x, y, z - lowest + gap) for x, y, z in placed], faces
 

@@ -220,6 +220,35 @@ TEST(BvhTraversal, NoRayLeavesAClosedMeshFarFromTheOriginOrOfAnyScale) {
     EXPECT_EQ(count_leaks(bumpy_sphere(0, V3f(1.0f), 1.0f), V3f(1.0f), 0.5f, 1 << 17), no_leaks);
 }
 
+TEST(BvhTraversal, NoRayFromFarAwaySlipsThrough) {
+    // A sheet of squares, and rays to points on their sides from so far that the slab test's rounding, 2^-24 of the
+    // origin's coordinates, dwarfs the boxes' own padding, 2^-20 of the triangles'.
+    constexpr int squares = 32;
+    const auto corner = [](int i, int j) {
+        return V3f(static_cast<float>(i) / squares, static_cast<float>(j) / squares, 0.0f);
+    };
+    TriangleSoup soup;
+    for (int i = 0; i < squares; ++i) {
+        for (int j = 0; j < squares; ++j) {
+            add(soup, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
+            add(soup, corner(i, j), corner(i + 1, j + 1), corner(i, j + 1));
+        }
+    }
+    Random random(10);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 1 << 17; ++i) {
+        V3f target = corner(1 + static_cast<int>(random.index(squares - 1)), 1 + static_cast<int>(random.index(squares - 1)));
+        target[static_cast<int>(random.index(2))] = random(0.1f, 0.9f);
+        const V3f origin(random(2000.0f, 8000.0f), random(2000.0f, 8000.0f), random(2000.0f, 8000.0f));
+        rays.push_back(make_ray(origin, (target - origin).normalized()));
+    }
+    RayTracer tracer(device(), build_bvh(soup));
+    std::size_t missed = 0;
+    for (const RayHit& hit : tracer.trace_closest(rays))
+        missed += hit.triangle < 0 ? 1 : 0;
+    EXPECT_EQ(missed, 0u);
+}
+
 TEST(BvhTraversal, NoTrianglesNoHits) {
     Random random(9);
     std::vector<Ray> rays = random_rays(100, 1.0f, random);

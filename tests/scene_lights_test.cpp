@@ -58,8 +58,10 @@ TEST(SceneLight, DefaultsAreThoseOfPbrt) {
 }
 
 TEST(SceneLight, EverySpectrumTypeIsNormalisedToUnitLuminance) {
-    for (const char* spectrum : {"\"spectrum I\" [300 5 900 5]", "\"spectrum I\" \"stdillum-F11\"", "\"blackbody I\" 3000"})
-        EXPECT_NEAR(luminance(light_of(std::string("LightSource \"point\" ") + spectrum).emission), 1.0, tight) << spectrum;
+    for (const char* spectrum :
+         {"\"spectrum I\" [300 5 900 5]", "\"spectrum I\" \"stdillum-F11\"", "\"blackbody I\" 3000"})
+        EXPECT_NEAR(luminance(light_of(std::string("LightSource \"point\" ") + spectrum).emission), 1.0, tight)
+            << spectrum;
 }
 
 TEST(SceneLight, RgbIsNormalisedByItsWhiteOnly) {
@@ -73,7 +75,8 @@ TEST(SceneLight, RgbIsNormalisedByItsWhiteOnly) {
 }
 
 TEST(SceneLight, PowerAndIlluminanceScaleAsInPbrt) {
-    EXPECT_NEAR(light_of("LightSource \"point\" \"float power\" 12 \"float scale\" 2").scale, 2.0 * 12.0 / (4.0 * pi), tight);
+    EXPECT_NEAR(light_of("LightSource \"point\" \"float power\" 12 \"float scale\" 2").scale, 2.0 * 12.0 / (4.0 * pi),
+                tight);
     const double start = std::cos(25.0 * pi / 180.0), end = std::cos(30.0 * pi / 180.0);
     EXPECT_NEAR(light_of("LightSource \"spot\" \"float power\" 12").scale,
                 12.0 / (2.0 * pi * ((1.0 - start) + (start - end) / 2.0)), tight);
@@ -95,9 +98,10 @@ TEST(SceneLight, PositionsAndDirectionsFollowTheTransform) {
 
 TEST(SceneAreaLight, BelongsToTheShapesOfItsBlock) {
     const SceneFolder folder;
-    const Scene scene = folder.load(with_world("AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 3 \"bool twosided\" true\n"
-                                               "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 3 0 2 3 0]\n"
-                                               "Shape \"sphere\"\nAttributeEnd\nShape \"sphere\""));
+    const Scene scene =
+        folder.load(with_world("AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 3 \"bool twosided\" true\n"
+                               "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 3 0 2 3 0]\n"
+                               "Shape \"sphere\"\nAttributeEnd\nShape \"sphere\""));
     ASSERT_EQ(scene.lights.size(), 2u);
     EXPECT_EQ(scene.shapes[0].area_light, 0);
     EXPECT_EQ(scene.shapes[1].area_light, 1);
@@ -134,12 +138,15 @@ TEST(SceneMaterial, DefaultIsGreyDiffuse) {
 }
 
 TEST(SceneMaterial, DiffuseTakesRgbPairsAndFiles) {
-    EXPECT_NEAR(material_of("Material \"diffuse\" \"rgb reflectance\" [0.25 0.25 0.25]").reflectance(500.0), 0.25, 1e-6);
-    EXPECT_NEAR(material_of("Material \"diffuse\" \"spectrum reflectance\" [400 0 800 1]").reflectance(500.0), 0.25, tight);
+    EXPECT_NEAR(material_of("Material \"diffuse\" \"rgb reflectance\" [0.25 0.25 0.25]").reflectance(500.0), 0.25,
+                1e-6);
+    EXPECT_NEAR(material_of("Material \"diffuse\" \"spectrum reflectance\" [400 0 800 1]").reflectance(500.0), 0.25,
+                tight);
     const SceneFolder folder;
     folder.write("ramp.spd", "# nm value\n400 0\n800 0.8\n");
-    const Scene scene = folder.load(with_world("LightSource \"point\" Material \"diffuse\" \"spectrum reflectance\" \"ramp.spd\" "
-                                               "Shape \"sphere\""));
+    const Scene scene =
+        folder.load(with_world("LightSource \"point\" Material \"diffuse\" \"spectrum reflectance\" \"ramp.spd\" "
+                               "Shape \"sphere\""));
     EXPECT_NEAR(scene.materials.at(0).reflectance(500.0), 0.2, tight);
 }
 
@@ -166,9 +173,10 @@ TEST(SceneMaterial, ConductorTakesIndicesOrReflectance) {
 
 TEST(SceneMaterial, NamedMaterialsMayComeLaterAndUnusedOnesVanish) {
     const SceneFolder folder;
-    const Scene scene = folder.load(with_world("LightSource \"point\" MakeNamedMaterial \"unused\" \"string type\" \"dielectric\"\n"
-                                               "NamedMaterial \"late\" Shape \"sphere\"\n"
-                                               "MakeNamedMaterial \"late\" \"string type\" \"conductor\""));
+    const Scene scene =
+        folder.load(with_world("LightSource \"point\" MakeNamedMaterial \"unused\" \"string type\" \"dielectric\"\n"
+                               "NamedMaterial \"late\" Shape \"sphere\"\n"
+                               "MakeNamedMaterial \"late\" \"string type\" \"conductor\""));
     ASSERT_EQ(scene.materials.size(), 1u);
     EXPECT_EQ(scene.materials[0].kind, Material::Kind::Conductor);
     EXPECT_EQ(scene.materials[0].name, "late");

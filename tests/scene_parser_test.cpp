@@ -79,7 +79,9 @@ TEST(SceneTransform, AttributeBlocksRestoreEverythingAndTransformBlocksTheTransf
                                                "TransformBegin Translate 2 0 0 Material \"conductor\"\n" + triangle +
                                                "TransformEnd\n" + triangle));
     ASSERT_EQ(scene.shapes.size(), 4u);
-    const auto kind = [&](std::size_t i) { return scene.materials.at(static_cast<std::size_t>(scene.shapes[i].material)).kind; };
+    const auto kind = [&](std::size_t i) {
+        return scene.materials.at(static_cast<std::size_t>(scene.shapes[i].material)).kind;
+    };
     const auto x = [&](std::size_t i) { return scene.shapes[i].mesh.positions[0].x; };
     EXPECT_EQ(kind(0), Material::Kind::Diffuse);
     EXPECT_EQ(kind(1), Material::Kind::Dielectric);
@@ -92,11 +94,13 @@ TEST(SceneTransform, AttributeBlocksRestoreEverythingAndTransformBlocksTheTransf
 }
 
 TEST(SceneTransform, CoordinateSystemsAreNamedAndRecalled) {
-    expect_near(V3d(triangle_after("Translate 1 2 3 CoordinateSystem \"here\" Identity CoordSysTransform \"here\"").positions[0]),
+    expect_near(V3d(triangle_after("Translate 1 2 3 CoordinateSystem \"here\" Identity CoordSysTransform \"here\"")
+                        .positions[0]),
                 {1, 2, 3});
     const SceneFolder folder;
-    const Scene scene = folder.load("Translate 0 0 -4 Camera \"perspective\" WorldBegin LightSource \"point\" "
-                                    "CoordSysTransform \"camera\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]");
+    const Scene scene =
+        folder.load("Translate 0 0 -4 Camera \"perspective\" WorldBegin LightSource \"point\" "
+                    "CoordSysTransform \"camera\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]");
     // The camera stands at z = 4, and "camera" leads from its space to the world.
     expect_near(V3d(scene.shapes[0].mesh.positions[0]), {0, 0, 4});
 }
@@ -131,13 +135,14 @@ TEST(SceneCamera, ParametersAndDefaults) {
     EXPECT_FALSE(plain.settings.max_depth);
     EXPECT_FALSE(plain.settings.initial_radius);
 
-    const Scene full = folder.load("Camera \"perspective\" \"float fov\" 33 \"float lensradius\" [0.1] \"float focaldistance\" 4 "
-                                   "\"float screenwindow\" [-1 1 -2 2]\n"
-                                   "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" [32] "
-                                   "\"string filename\" \"out.exr\" \"bool savefp16\" false\n"
-                                   "Sampler \"halton\" \"integer pixelsamples\" 99 \"integer seed\" 3\n"
-                                   "Integrator \"sppm\" \"integer photonsperiteration\" 1000 \"float radius\" 0.25\n"
-                                   "WorldBegin LightSource \"point\" Shape \"sphere\"");
+    const Scene full =
+        folder.load("Camera \"perspective\" \"float fov\" 33 \"float lensradius\" [0.1] \"float focaldistance\" 4 "
+                    "\"float screenwindow\" [-1 1 -2 2]\n"
+                    "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" [32] "
+                    "\"string filename\" \"out.exr\" \"bool savefp16\" false\n"
+                    "Sampler \"halton\" \"integer pixelsamples\" 99 \"integer seed\" 3\n"
+                    "Integrator \"sppm\" \"integer photonsperiteration\" 1000 \"float radius\" 0.25\n"
+                    "WorldBegin LightSource \"point\" Shape \"sphere\"");
     EXPECT_EQ(full.camera.fov_degrees, 33.0);
     EXPECT_EQ(full.camera.lens_radius, 0.1);
     EXPECT_EQ(full.camera.focal_distance, 4.0);
@@ -154,24 +159,27 @@ TEST(SceneCamera, ParametersAndDefaults) {
 
 TEST(SceneCamera, FrameAspectRatioSetsTheScreenWindow) {
     const SceneFolder folder;
-    const Scene wide = folder.load("Camera \"perspective\" \"float frameaspectratio\" 2 WorldBegin LightSource \"point\" "
-                                   "Shape \"sphere\"");
+    const Scene wide =
+        folder.load("Camera \"perspective\" \"float frameaspectratio\" 2 WorldBegin LightSource \"point\" "
+                    "Shape \"sphere\"");
     EXPECT_EQ(wide.camera.screen_window, (std::array<double, 4>{-2, 2, -1, 1}));
-    const Scene tall = folder.load("Camera \"perspective\" \"float frameaspectratio\" 0.5 WorldBegin LightSource \"point\" "
-                                   "Shape \"sphere\"");
+    const Scene tall =
+        folder.load("Camera \"perspective\" \"float frameaspectratio\" 0.5 WorldBegin LightSource \"point\" "
+                    "Shape \"sphere\"");
     EXPECT_EQ(tall.camera.screen_window, (std::array<double, 4>{-1, 1, -2, 2}));
 }
 
 TEST(SceneNotes, IgnoredDirectivesAreNotedWithFileAndLine) {
     const SceneFolder folder;
-    const Scene scene = folder.load("Option \"bool disablepixeljitter\" true\nPixelFilter \"gaussian\"\n\nSampler \"sobol\"\n"
-                                    "Accelerator \"bvh\"\nIntegrator \"path\" \"integer maxdepth\" 3 \"bool regularize\" true\n" +
-                                    with_lit_world(""));
+    const Scene scene =
+        folder.load("Option \"bool disablepixeljitter\" true\nPixelFilter \"gaussian\"\n\nSampler \"sobol\"\n"
+                    "Accelerator \"bvh\"\nIntegrator \"path\" \"integer maxdepth\" 3 \"bool regularize\" true\n" +
+                    with_lit_world(""));
     ASSERT_EQ(scene.notes.size(), 5u);
     const std::string file = folder.path("scene.pbrt");
-    const std::array<std::string, 5> expected = {":1: the option \"disablepixeljitter\"", ":2: PixelFilter \"gaussian\"",
-                                                 ":4: Sampler \"sobol\"", ":5: Accelerator \"bvh\"",
-                                                 ":6: Integrator \"path\""};
+    const std::array<std::string, 5> expected = {":1: the option \"disablepixeljitter\"",
+                                                 ":2: PixelFilter \"gaussian\"", ":4: Sampler \"sobol\"",
+                                                 ":5: Accelerator \"bvh\"", ":6: Integrator \"path\""};
     for (std::size_t i = 0; i < 5; ++i)
         EXPECT_EQ(scene.notes[i].rfind(file + expected[i], 0), 0u) << scene.notes[i];
     EXPECT_EQ(scene.settings.max_depth, 3);
@@ -208,9 +216,9 @@ TEST(SceneOrientation, NormalsTransformByTheInverseTranspose) {
 
 TEST(SceneShape, BilinearPatchHasPbrtsNormalAndArea) {
     const SceneFolder folder;
-    const Scene scene = folder.load(with_world(
-        "LightSource \"point\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 0  0 3 0  2 3 0]\n"
-        "Shape \"bilinearmesh\" \"integer indices\" [0 2 1 3] \"point3 P\" [0 0 0  2 0 0  0 3 0  2 3 0]\n"));
+    const Scene scene = folder.load(
+        with_world("LightSource \"point\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 0  0 3 0  2 3 0]\n"
+                   "Shape \"bilinearmesh\" \"integer indices\" [0 2 1 3] \"point3 P\" [0 0 0  2 0 0  0 3 0  2 3 0]\n"));
     // (p10 − p00) × (p01 − p00)
     const std::array<double, 2> z = {1, -1};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -224,7 +232,8 @@ TEST(SceneShape, BilinearPatchHasPbrtsNormalAndArea) {
 
 TEST(SceneShape, SphereIsClosedFacesOutwardAndLiesOnItsRadius) {
     const SceneFolder folder;
-    const Scene scene = folder.load(with_world("LightSource \"point\" Translate 1 2 3 Shape \"sphere\" \"float radius\" 2"));
+    const Scene scene =
+        folder.load(with_world("LightSource \"point\" Translate 1 2 3 Shape \"sphere\" \"float radius\" 2"));
     const Mesh& mesh = scene.shapes.at(0).mesh;
     const V3d centre(1, 2, 3);
     ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
@@ -260,16 +269,17 @@ TEST(SceneShape, DegenerateTrianglesAreDroppedAndCounted) {
                                                "[0 1 2  0 1 1  0 3 1] \"point3 P\" [0 0 0  1 0 0  0 1 0  0.5 0 0]"));
     EXPECT_EQ(scene.shapes.at(0).mesh.triangles.size(), 1u);
     ASSERT_EQ(scene.notes.size(), 1u);
-    EXPECT_EQ(scene.notes[0], folder.path("scene.pbrt") + ":4: dropped 2 degenerate triangles.");
+    EXPECT_EQ(scene.notes[0], folder.path("scene.pbrt") + ":4: dropped 2 degenerate triangles");
 }
 
 TEST(SceneObject, InstancesAreCopiesUnderBothTransforms) {
     const SceneFolder folder;
-    const Scene scene = folder.load(with_world("LightSource \"point\" Translate 0 0 1\nObjectBegin \"thing\" Scale 2 2 2 "
-                                               "Material \"dielectric\"\n"
-                                               "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0]\nObjectEnd\n"
-                                               "Identity Translate 5 0 0 ObjectInstance \"thing\"\n"
-                                               "Identity Scale -1 1 1 ObjectInstance \"thing\"\n"));
+    const Scene scene =
+        folder.load(with_world("LightSource \"point\" Translate 0 0 1\nObjectBegin \"thing\" Scale 2 2 2 "
+                               "Material \"dielectric\"\n"
+                               "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0]\nObjectEnd\n"
+                               "Identity Translate 5 0 0 ObjectInstance \"thing\"\n"
+                               "Identity Scale -1 1 1 ObjectInstance \"thing\"\n"));
     ASSERT_EQ(scene.shapes.size(), 2u);
     expect_near(V3d(scene.shapes[0].mesh.positions[1]), {7, 0, 1});
     expect_near(V3d(scene.shapes[1].mesh.positions[1]), {-2, 0, 1});

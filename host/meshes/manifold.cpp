@@ -69,13 +69,13 @@ void check_manifold(const std::string& path, const Faces& faces, std::size_t ver
         while (end < sides.size() && sides[end].low == side.low && sides[end].high == side.high)
             ++end;
         if (end - begin > 2)
-            fail("{}: the mesh is not a manifold: {} faces share the edge between the vertices {} and {}.", path,
+            fail("{}: the mesh is not a manifold: {} faces share the edge between the vertices {} and {}", path,
                  end - begin, side.low + first_index, side.high + first_index);
         if (end - begin == 2) {
             const Side& other = sides[begin + 1];
             if (side.ascending == other.ascending)
                 fail("{}: the mesh is not an oriented manifold: two faces run through the edge between the vertices {} "
-                     "and {} in the same direction.",
+                     "and {} in the same direction",
                      path, side.low + first_index, side.high + first_index);
             fans.join(side.corner, other.next);
             fans.join(side.next, other.corner);
@@ -90,7 +90,7 @@ void check_manifold(const std::string& path, const Faces& faces, std::size_t ver
             if (fan == sides.size())
                 fan = mine;
             else if (fan != mine)
-                fail("{}: the mesh is not a manifold: the faces at the vertex {} form several separate fans.", path,
+                fail("{}: the mesh is not a manifold: the faces at the vertex {} form several separate fans", path,
                      vertex + first_index);
         }
     }

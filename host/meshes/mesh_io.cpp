@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "meshes/mesh_checks.h"
 #include "meshes/mesh_importer.h"
+#include "meshes/ply_header.h"
 #include "meshes/read_file.h"
 #include "meshes/triangulate.h"
 
@@ -11,10 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <sstream>
-#include <tuple>
 
 namespace tristim {
 
@@ -35,36 +33,9 @@ class QuietOpenMesh {
     bool was_enabled_;
 };
 
-/// Vertices and faces of the header of a PLY file, to see whether the reader found them all.
-struct PlyCounts {
-    std::size_t vertices = 0;
-    std::size_t faces = 0;
-};
-
-PlyCounts check_ply_header(const std::string& path, const std::string& bytes) {
-    PlyCounts counts;
-    std::istringstream header(bytes.substr(0, bytes.find("end_header")));
-    std::string line;
-    std::getline(header, line);
-    if (line.substr(0, 3) != "ply" || bytes.find("end_header") == std::string::npos)
-        fail("{}: this is not a PLY file: it has no header from \"ply\" to \"end_header\".", path);
-    while (std::getline(header, line)) {
-        std::istringstream words(line);
-        std::string keyword, name;
-        std::size_t count = 0;
-        if (words >> keyword >> name >> count && keyword == "element") {
-            if (name == "vertex")
-                counts.vertices = count;
-            else if (name == "face")
-                counts.faces = count;
-        }
-    }
-    return counts;
-}
-
 void import_ply(const std::string& path, const std::string& bytes, MeshImporter& importer) {
-    const PlyCounts counts = check_ply_header(path, bytes);
-    std::istringstream stream(bytes, std::ios::binary);
+    const PlyHeader header = read_ply_header(path, bytes);
+    std::istringstream stream(header.text + bytes.substr(header.body_offset), std::ios::binary);
     // The reader does not look whether its reads succeed; the exception stops it where the file ends or is no number.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
@@ -74,9 +45,9 @@ void import_ply(const std::string& path, const std::string& bytes, MeshImporter&
     } catch (const std::ios::failure&) {
         whole = false;
     }
-    if (!whole || importer.positions.size() != counts.vertices || importer.faces.size() != counts.faces)
-        fail("{}: the PLY file is cut short or malformed: {} of {} vertices and {} of {} faces could be read.", path,
-             importer.positions.size(), counts.vertices, importer.faces.size(), counts.faces);
+    if (!whole || importer.positions.size() != header.vertices || importer.faces.size() != header.faces)
+        fail("{}: the PLY file is cut short or malformed: {} of {} vertices and {} of {} faces could be read", path,
+             importer.positions.size(), header.vertices, importer.faces.size(), header.faces);
 }
 
 std::size_t import_obj(const std::string& path, const std::string& bytes, MeshImporter& importer) {
@@ -85,7 +56,7 @@ std::size_t import_obj(const std::string& path, const std::string& bytes, MeshIm
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
     if (!OpenMesh::IO::IOManager().read(stream, "obj", importer, options) ||
         importer.positions.size() != counts.vertices)
-        fail("{}: the OBJ file is malformed.", path);
+        fail("{}: the OBJ file is malformed", path);
     // OpenMesh leaves out faces with fewer than three different vertices.
     return counts.faces - importer.faces.size();
 }
@@ -94,16 +65,16 @@ void check_vertices(const std::string& path, const MeshImporter& importer, int f
     for (std::size_t i = 0; i < importer.positions.size(); ++i) {
         const Imath::V3f& p = importer.positions[i];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            fail("{}: the vertex {} is not finite: ({}, {}, {}).", path, i + static_cast<std::size_t>(first_index), p.x,
+            fail("{}: the vertex {} is not finite: ({}, {}, {})", path, i + static_cast<std::size_t>(first_index), p.x,
                  p.y, p.z);
     }
     for (std::size_t f = 0; f < importer.faces.size(); ++f) {
         for (const auto& corner : importer.faces[f]) {
             if (corner.vertex < 0 || static_cast<std::size_t>(corner.vertex) >= importer.positions.size())
-                fail("{}: the vertex index {} of face {} is out of range: the mesh has {} vertices.", path,
+                fail("{}: the vertex index {} of face {} is out of range: the mesh has {} vertices", path,
                      corner.vertex, f, importer.positions.size());
             if (corner.normal && !std::isfinite(corner.normal->length2()))
-                fail("{}: the normal of vertex {} is not finite.", path, corner.vertex + first_index);
+                fail("{}: the normal of vertex {} is not finite", path, corner.vertex + first_index);
         }
     }
 }
@@ -113,9 +84,9 @@ std::vector<std::vector<MeshImporter::Corner>> proper_faces(const MeshImporter& 
     std::vector<std::vector<MeshImporter::Corner>> result;
     for (const auto& face : importer.faces) {
         std::vector<MeshImporter::Corner> corners;
-        std::set<int> seen;
         for (const auto& corner : face) {
-            if (seen.insert(corner.vertex).second)
+            const auto is_same = [&](const auto& other) { return other.vertex == corner.vertex; };
+            if (std::none_of(corners.begin(), corners.end(), is_same))
                 corners.push_back(corner);
         }
         if (corners.size() >= 3)
@@ -127,23 +98,28 @@ std::vector<std::vector<MeshImporter::Corner>> proper_faces(const MeshImporter& 
 /// Gives every (vertex, normal) pair an output vertex of its own.
 class VertexTable {
   public:
-    explicit VertexTable(MeshFile& mesh) : mesh_(mesh) {}
+    VertexTable(const MeshImporter& importer, bool with_normals, MeshFile& mesh)
+        : importer_(importer), with_normals_(with_normals), mesh_(mesh), copies_(importer.positions.size()) {}
 
-    std::uint32_t index(const MeshImporter& importer, const MeshImporter::Corner& corner, bool with_normals) {
+    std::uint32_t index(const MeshImporter::Corner& corner) {
+        const auto vertex = static_cast<std::size_t>(corner.vertex);
         const Imath::V3f normal = corner.normal.value_or(Imath::V3f(0.0f));
-        const auto [it, is_new] = table_.try_emplace(std::tuple(corner.vertex, normal.x, normal.y, normal.z),
-                                                     static_cast<std::uint32_t>(mesh_.positions.size()));
-        if (is_new) {
-            mesh_.positions.push_back(importer.positions[static_cast<std::size_t>(corner.vertex)]);
-            if (with_normals)
-                mesh_.normals.push_back(normal);
+        for (const std::uint32_t copy : copies_[vertex]) {
+            if (!with_normals_ || mesh_.normals[copy] == normal)
+                return copy;
         }
-        return it->second;
+        copies_[vertex].push_back(static_cast<std::uint32_t>(mesh_.positions.size()));
+        mesh_.positions.push_back(importer_.positions[vertex]);
+        if (with_normals_)
+            mesh_.normals.push_back(normal);
+        return copies_[vertex].back();
     }
 
   private:
+    const MeshImporter& importer_;
+    bool with_normals_;
     MeshFile& mesh_;
-    std::map<std::tuple<int, float, float, float>, std::uint32_t> table_;
+    std::vector<std::vector<std::uint32_t>> copies_; ///< per vertex of the file
 };
 
 /// Corners without a normal in a mesh that has some get their face's, so that they stay flat.
@@ -164,14 +140,14 @@ MeshFile to_triangles(const MeshImporter& importer, std::vector<std::vector<Mesh
     const bool with_normals = std::any_of(faces.begin(), faces.end(), [](const auto& face) {
         return std::any_of(face.begin(), face.end(), [](const auto& corner) { return corner.normal.has_value(); });
     });
-    VertexTable table(mesh);
+    VertexTable table(importer, with_normals, mesh);
     for (std::size_t f = 0; f < faces.size(); ++f) {
         if (with_normals)
             complete_normals(importer, faces[f]);
         std::vector<std::uint32_t> indices;
         std::vector<Imath::V3f> corners;
         for (const auto& corner : faces[f]) {
-            indices.push_back(table.index(importer, corner, with_normals));
+            indices.push_back(table.index(corner));
             corners.push_back(mesh.positions[indices.back()]);
         }
         for (const auto& [a, b, c] : triangulate(corners)) {
@@ -210,7 +186,7 @@ MeshFile read_mesh(const std::string& path, MeshFormat format) {
     std::vector<std::vector<MeshImporter::Corner>> faces = proper_faces(importer);
     left_out += importer.faces.size() - faces.size();
     if (faces.empty())
-        fail("{}: the mesh is empty: it has {} vertices and no face of three different ones.", path,
+        fail("{}: the mesh is empty: it has {} vertices and no face of three different ones", path,
              importer.positions.size());
     check_manifold(path, vertex_lists(faces), importer.positions.size(), first_index);
     MeshFile mesh = to_triangles(importer, std::move(faces));

@@ -42,7 +42,7 @@ void check_numbers(const Position& at, std::string_view keyword, std::string_vie
         const std::string_view word = take_word(line);
         const auto value = parse<float>(word);
         if (!value || !std::isfinite(*value))
-            fail("{}:{}: \"{}\" in \"{}\" is not a finite number.", at.path, at.line, word, keyword);
+            fail("{}:{}: \"{}\" in \"{}\" is not a finite number", at.path, at.line, word, keyword);
     }
 }
 
@@ -51,10 +51,10 @@ void check_index(const Position& at, std::string_view word, std::size_t current,
                  std::string_view what) {
     const auto value = parse<long long>(word);
     if (!value)
-        fail("{}:{}: \"{}\" in \"f\" is not an index.", at.path, at.line, word);
+        fail("{}:{}: \"{}\" in \"f\" is not an index", at.path, at.line, word);
     const long long index = *value < 0 ? static_cast<long long>(current) + *value + 1 : *value;
     if (index < 1 || index > static_cast<long long>(total))
-        fail("{}:{}: the {} index {} is out of range: the file has {}.", at.path, at.line, what, *value, total);
+        fail("{}:{}: the {} index {} is out of range: the file has {}", at.path, at.line, what, *value, total);
 }
 
 struct Totals {
@@ -76,7 +76,7 @@ void check_face(const Position& at, std::string_view line, const Totals& current
             check_index(at, rest.substr(second + 1), current.vn, totals.vn, "normal");
     }
     if (corners < 3)
-        fail("{}:{}: a face has {} corners, but it needs three.", at.path, at.line, corners);
+        fail("{}:{}: a face has {} corners, but it needs three", at.path, at.line, corners);
 }
 
 template <typename Visitor>
@@ -110,7 +110,7 @@ ObjCounts check_obj(const std::string& path, std::string_view text) {
         const Position at{path, number};
         count(current, keyword);
         if (!keyword.empty() && line.ends_with('\\') && keyword.front() != '#')
-            fail("{}:{}: a line that goes on after \"\\\" is not supported.", path, number);
+            fail("{}:{}: a line that goes on after \"\\\" is not supported", path, number);
         if (keyword == "v" || keyword == "vn") {
             check_numbers(at, keyword, line);
         } else if (keyword == "f") {

@@ -13,14 +13,14 @@ namespace tristim {
 std::string read_whole_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
-        fail("cannot read \"{}\": it is a folder.", path);
+        fail("cannot read \"{}\": it is a folder", path);
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file)
-        fail("cannot open \"{}\": {}.", path, std::strerror(errno));
+        fail("cannot open \"{}\": {}", path, std::strerror(errno));
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
     if (file.bad())
-        fail("cannot read \"{}\": {}.", path, std::strerror(errno));
+        fail("cannot read \"{}\": {}", path, std::strerror(errno));
     return bytes;
 }
 

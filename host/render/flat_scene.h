@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/region.h"
 #include "bvh/bvh.h"
 #include "render/spectrum_table.h"
 #include "scene/scene.h"
@@ -8,15 +9,6 @@
 #include <vector>
 
 namespace tristim {
-
-/// The part of an image to render, in pixels: [x, x+width) × [y, y+height).
-struct Region {
-    int x = 0;
-    int y = 0;
-    int width = 0;
-    int height = 0;
-    int pixels() const { return width * height; }
-};
 
 /// A scene in the arrays that the kernels read.
 struct FlatScene {

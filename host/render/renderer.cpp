@@ -80,6 +80,7 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     const auto paths = static_cast<std::uint32_t>(options.photons_per_pass);
     photon_items_ = (paths + paths_per_item - 1) / paths_per_item;
     item_counts_ = Buffer<std::uint32_t>(device, "photon counts", photon_items_);
+    item_rays_ = Buffer<std::uint32_t>(device, "photon rays", std::vector<std::uint32_t>(photon_items_, 0U));
     allocate_photons(static_cast<std::uint32_t>(photons_per_path * std::min(paths, paths_per_item)));
 
     const Stopwatch rendering;
@@ -203,6 +204,7 @@ void Renderer::trace_photons(std::uint32_t pass) {
         photon_pass_.setArg(argument++, photons_.cl());
         photon_pass_.setArg(argument++, photon_spectra_.cl());
         photon_pass_.setArg(argument++, item_counts_.cl());
+        photon_pass_.setArg(argument++, item_rays_.cl());
         enqueue(Step::PhotonPass, photon_pass_, photon_items_);
         sorter_.count(item_counts_, [this](const ::cl::Kernel& k, std::size_t n) { enqueue(Step::Grid, k, n); });
         const std::uint32_t needed = sorter_.summary(device_).most_per_item;
@@ -253,6 +255,17 @@ void Renderer::collect_times() {
         statistics_.step_seconds[static_cast<std::size_t>(step)] += 1e-9 * static_cast<double>(end - begin);
     }
     events_.clear();
+}
+
+RayTotals Renderer::rays() const {
+    RayTotals totals;
+    for (const FilmPixel& pixel : film_.read(device_)) {
+        totals.camera += pixel.camera_rays;
+        totals.shadow += pixel.shadow_rays;
+    }
+    for (const std::uint32_t rays : item_rays_.read(device_))
+        totals.photon += rays;
+    return totals;
 }
 
 FilmImage Renderer::film() const {

@@ -26,6 +26,10 @@ class Renderer {
     void render_pass(std::uint32_t pass);
 
     FilmImage film() const;
+
+    /// Rays traced so far, the pilot's photons included.
+    RayTotals rays() const;
+
     const RenderStatistics& statistics() const { return statistics_; }
     const RenderOptions& options() const { return options_; }
     const Effects& effects() const { return effects_; }
@@ -82,6 +86,7 @@ class Renderer {
     Buffer<Photon> photons_;
     Buffer<float> photon_spectra_;
     Buffer<std::uint32_t> item_counts_;
+    Buffer<std::uint32_t> item_rays_;
     PhotonSorter sorter_;
 
     ::cl::Kernel wavelengths_;

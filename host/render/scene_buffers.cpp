@@ -21,7 +21,7 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::si
     light_cdf_ = Buffer<float>(device, "light CDF", scene.light_cdf);
     sobol_table_ = Buffer<std::uint32_t>(device, "Sobol' table", sobol_table());
     recorded_rays_ = Buffer<Ray>(device, "recorded rays", recorded_rays);
-    recorded_count_ = Buffer<std::uint32_t>(device, "recorded ray counts", 4);
+    recorded_count_ = Buffer<std::uint32_t>(device, "recorded ray counts", 2);
     clear_recorded_rays(device);
 }
 
@@ -36,11 +36,11 @@ cl_uint SceneBuffers::bind(::cl::Kernel& kernel, const Buffer<float>& pass_table
 }
 
 void SceneBuffers::clear_recorded_rays(const Device& device) const {
-    recorded_count_.write(device, {0U, 0U, static_cast<std::uint32_t>(recorded_rays_.size()), 0U});
+    recorded_count_.write(device, {0U, static_cast<std::uint32_t>(recorded_rays_.size())});
 }
 
 std::vector<Ray> SceneBuffers::recorded_rays(const Device& device) const {
-    const std::size_t count = recorded_count_.read(device)[3];
+    const std::size_t count = recorded_count_.read(device)[0];
     return recorded_rays_.read(device, std::min(count, recorded_rays_.size()));
 }
 

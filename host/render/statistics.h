@@ -12,6 +12,13 @@ namespace tristim {
 enum class Step { Wavelengths, EyePass, PhotonPass, Grid, Gather, Film };
 inline constexpr std::array<const char*, 6> step_names{"wavelengths", "eye", "photon", "grid", "gather", "film"};
 
+/// Rays traced, by kind.
+struct RayTotals {
+    std::uint64_t camera = 0;
+    std::uint64_t shadow = 0;
+    std::uint64_t photon = 0;
+};
+
 /// What a render has cost so far.
 struct RenderStatistics {
     double bvh_seconds = 0.0;

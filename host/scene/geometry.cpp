@@ -76,7 +76,7 @@ BakedMesh bake(const Geometry& geometry) {
     for (const V3d& position : geometry.positions) {
         const V3f single(position);
         if (!std::isfinite(single.x) || !std::isfinite(single.y) || !std::isfinite(single.z))
-            fail("the position ({}, {}, {}) is too large.", position.x, position.y, position.z);
+            fail("the position ({}, {}, {}) is too large", position.x, position.y, position.z);
         result.mesh.positions.push_back(single);
     }
     if (!geometry.normals.empty())

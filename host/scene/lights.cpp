@@ -18,7 +18,7 @@ double radians(double degrees) {
 double scale_parameter(ParameterList& parameters) {
     const double scale = parameters.number("scale", 1.0);
     if (scale <= 0.0)
-        fail_at(parameters.where("scale"), "\"scale\" of {} is {}, but a light must emit.", parameters.owner(), scale);
+        fail_at(parameters.where("scale"), "\"scale\" of {} is {}, but a light must emit", parameters.owner(), scale);
     return scale;
 }
 
@@ -28,8 +28,7 @@ std::optional<double> target_parameter(ParameterList& parameters, const std::str
         return std::nullopt;
     const double value = parameters.number(name, 0.0);
     if (value <= 0.0)
-        fail_at(parameters.where(name), "\"{}\" of {} is {}, but it must be positive.", name, parameters.owner(),
-                value);
+        fail_at(parameters.where(name), "\"{}\" of {} is {}, but it must be positive", name, parameters.owner(), value);
     return value;
 }
 
@@ -37,7 +36,7 @@ V3d direction_parameter(ParameterList& parameters, const V3d& from, const M44d& 
     const V3d to = parameters.point("to", V3d(0.0, 0.0, 1.0));
     const V3d direction = transform_vector(ctm, to - from).normalized();
     if (direction.length2() == 0.0)
-        fail_at(parameters.where("to"), "\"from\" and \"to\" of {} are the same point.", parameters.owner());
+        fail_at(parameters.where("to"), "\"from\" and \"to\" of {} are the same point", parameters.owner());
     return direction;
 }
 
@@ -46,13 +45,13 @@ void set_spot(Light& light, ParameterList& parameters, const M44d& ctm) {
     light.position = transform_point(ctm, from);
     light.direction = direction_parameter(parameters, from, ctm);
     if (!keeps_angles(ctm))
-        fail_at(parameters.where(), "{} stands under a transformation that distorts its cone.", parameters.owner());
+        fail_at(parameters.where(), "{} stands under a transformation that distorts its cone", parameters.owner());
     const double cone = parameters.number("coneangle", 30.0);
     const double delta = parameters.number("conedeltaangle", 5.0);
     if (cone <= 0.0 || cone > 180.0)
-        fail_at(parameters.where("coneangle"), "\"coneangle\" is {}, but it must lie in (0, 180] degrees.", cone);
+        fail_at(parameters.where("coneangle"), "\"coneangle\" is {}, but it must lie in (0, 180] degrees", cone);
     if (delta < 0.0 || delta > cone)
-        fail_at(parameters.where("conedeltaangle"), "\"conedeltaangle\" is {}, but it must lie in [0, {}] degrees.",
+        fail_at(parameters.where("conedeltaangle"), "\"conedeltaangle\" is {}, but it must lie in [0, {}] degrees",
                 delta, cone);
     light.cos_total_width = std::cos(radians(cone));
     light.cos_falloff_start = std::cos(radians(cone - delta));
@@ -74,12 +73,11 @@ void set_distant(Light& light, ParameterList& parameters, const M44d& ctm) {
 Light make_light(const std::string& kind, ParameterList& parameters, const M44d& ctm, const PathResolver& resolve) {
     Light light;
     if (kind != "point" && kind != "spot" && kind != "distant" && kind != "infinite")
-        fail_at(parameters.where(), "the light \"{}\" is not supported.", kind);
+        fail_at(parameters.where(), "the light \"{}\" is not supported", kind);
     const bool has_intensity = kind == "point" || kind == "spot";
     light.scale = scale_parameter(parameters);
     if (kind == "infinite" && parameters.has("filename"))
-        fail_at(parameters.where("filename"), "\"filename\" of {}: image lights are not supported.",
-                parameters.owner());
+        fail_at(parameters.where("filename"), "\"filename\" of {}: image lights are not supported", parameters.owner());
     light.emission = emission_parameter(parameters, has_intensity ? "I" : "L", resolve);
     if (kind == "point") {
         light.kind = Light::Kind::Point;
@@ -103,10 +101,9 @@ Light make_light(const std::string& kind, ParameterList& parameters, const M44d&
 
 AreaLight make_area_light(const std::string& kind, ParameterList& parameters, const PathResolver& resolve) {
     if (kind != "diffuse")
-        fail_at(parameters.where(), "the area light \"{}\" is not supported.", kind);
+        fail_at(parameters.where(), "the area light \"{}\" is not supported", kind);
     if (parameters.has("filename"))
-        fail_at(parameters.where("filename"), "\"filename\" of {}: image lights are not supported.",
-                parameters.owner());
+        fail_at(parameters.where("filename"), "\"filename\" of {}: image lights are not supported", parameters.owner());
     AreaLight result;
     result.light.kind = Light::Kind::Area;
     result.light.scale = scale_parameter(parameters);

@@ -10,7 +10,7 @@ namespace {
 void require_smooth(ParameterList& parameters) {
     for (const char* name : {"roughness", "uroughness", "vroughness"}) {
         if (parameters.number(name, 0.0) != 0.0)
-            fail_at(parameters.where(name), "\"{}\" of {} must be 0: rough surfaces are not supported.", name,
+            fail_at(parameters.where(name), "\"{}\" of {} must be 0: rough surfaces are not supported", name,
                     parameters.owner());
     }
     parameters.boolean("remaproughness", true);
@@ -32,7 +32,7 @@ void set_conductor(Material& material, ParameterList& parameters, const PathReso
     if (parameters.has("reflectance")) {
         for (const char* name : {"eta", "k"}) {
             if (parameters.has(name))
-                fail_at(parameters.where(name), "{} takes either \"reflectance\" or \"eta\" and \"k\", not both.",
+                fail_at(parameters.where(name), "{} takes either \"reflectance\" or \"eta\" and \"k\", not both",
                         parameters.owner());
         }
         material.eta = Spectrum::constant(1.0);
@@ -59,7 +59,7 @@ Material make_material(const std::string& kind, ParameterList& parameters, const
         if (parameters.is_type("eta", "float")) {
             const double eta = parameters.number("eta", 1.5);
             if (eta <= 0.0)
-                fail_at(parameters.where("eta"), "the refractive index \"eta\" is {}, but it must be positive.", eta);
+                fail_at(parameters.where("eta"), "the refractive index \"eta\" is {}, but it must be positive", eta);
             material.eta = Spectrum::constant(eta);
         } else if (const auto eta = index_parameter(parameters, "eta", false, resolve)) {
             material.eta = *eta;
@@ -70,7 +70,7 @@ Material make_material(const std::string& kind, ParameterList& parameters, const
         set_conductor(material, parameters, resolve);
         require_smooth(parameters);
     } else {
-        fail_at(parameters.where(), "the material \"{}\" is not supported.", kind);
+        fail_at(parameters.where(), "the material \"{}\" is not supported", kind);
     }
     parameters.finish();
     return material;

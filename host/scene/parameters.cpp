@@ -6,7 +6,7 @@ namespace tristim {
 
 void ParameterList::add(Parameter parameter) {
     if (has(parameter.name))
-        fail_at(parameter.where, "the parameter \"{}\" of {} is given twice.", parameter.name, owner_);
+        fail_at(parameter.where, "the parameter \"{}\" of {} is given twice", parameter.name, owner_);
     parameters_.push_back(std::move(parameter));
 }
 
@@ -39,10 +39,10 @@ Parameter* ParameterList::typed(const std::string& name, std::initializer_list<c
     if (!parameter)
         return nullptr;
     if (parameter->type == "texture")
-        fail_at(parameter->where, "the parameter \"{}\" of {} is a texture, and textures are not supported.", name,
+        fail_at(parameter->where, "the parameter \"{}\" of {} is a texture, and textures are not supported", name,
                 owner_);
     if (std::find(types.begin(), types.end(), parameter->type) == types.end())
-        fail_at(parameter->where, "the parameter \"{}\" of {} has type \"{}\" where \"{}\" is expected.", name, owner_,
+        fail_at(parameter->where, "the parameter \"{}\" of {} has type \"{}\" where \"{}\" is expected", name, owner_,
                 parameter->type, *types.begin());
     parameter->used = true;
     return parameter;
@@ -53,7 +53,7 @@ namespace {
 template <typename T>
 const T& single(const Parameter& parameter, const std::vector<T>& values) {
     if (values.size() != 1)
-        fail_at(parameter.where, "the parameter \"{}\" takes one value, but {} are given.", parameter.name,
+        fail_at(parameter.where, "the parameter \"{}\" takes one value, but {} are given", parameter.name,
                 values.size());
     return values.front();
 }
@@ -75,7 +75,7 @@ bool ParameterList::boolean(const std::string& name, bool fallback) {
     if (!parameter)
         return fallback;
     if (parameter->bools.size() != 1)
-        fail_at(parameter->where, "the parameter \"{}\" takes one value, but {} are given.", name,
+        fail_at(parameter->where, "the parameter \"{}\" takes one value, but {} are given", name,
                 parameter->bools.size());
     return parameter->bools.front();
 }
@@ -88,7 +88,7 @@ std::string ParameterList::text(const std::string& name, const std::string& fall
 V3d ParameterList::point(const std::string& name, const V3d& fallback) {
     const std::vector<V3d> values = points(name);
     if (values.size() > 1)
-        fail_at(where(name), "the parameter \"{}\" takes one point, but {} are given.", name, values.size());
+        fail_at(where(name), "the parameter \"{}\" takes one point, but {} are given", name, values.size());
     return values.empty() ? fallback : values.front();
 }
 
@@ -120,7 +120,7 @@ std::vector<V3d> ParameterList::triples(const std::string& name, std::initialize
         return result;
     const std::vector<double>& numbers = parameter->numbers;
     if (numbers.empty() || numbers.size() % 3 != 0)
-        fail_at(parameter->where, "the parameter \"{}\" takes groups of three numbers, but {} are given.", name,
+        fail_at(parameter->where, "the parameter \"{}\" takes groups of three numbers, but {} are given", name,
                 numbers.size());
     for (std::size_t i = 0; i < numbers.size(); i += 3)
         result.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
@@ -146,8 +146,7 @@ void ParameterList::ignore_rest() {
 void ParameterList::finish() const {
     for (const Parameter& parameter : parameters_) {
         if (!parameter.used)
-            fail_at(parameter.where, "{} has no parameter \"{}\" here, or it is not supported.", owner_,
-                    parameter.name);
+            fail_at(parameter.where, "{} has no parameter \"{}\" here, or it is not supported", owner_, parameter.name);
     }
 }
 

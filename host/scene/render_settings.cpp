@@ -14,16 +14,14 @@ namespace {
 int positive_integer(ParameterList& parameters, const std::string& name, int fallback) {
     const int value = parameters.integer(name, fallback);
     if (value <= 0)
-        fail_at(parameters.where(name), "\"{}\" of {} is {}, but it must be positive.", name, parameters.owner(),
-                value);
+        fail_at(parameters.where(name), "\"{}\" of {} is {}, but it must be positive", name, parameters.owner(), value);
     return value;
 }
 
 double positive_number(ParameterList& parameters, const std::string& name, double fallback) {
     const double value = parameters.number(name, fallback);
     if (value <= 0.0)
-        fail_at(parameters.where(name), "\"{}\" of {} is {}, but it must be positive.", name, parameters.owner(),
-                value);
+        fail_at(parameters.where(name), "\"{}\" of {} is {}, but it must be positive", name, parameters.owner(), value);
     return value;
 }
 
@@ -33,7 +31,7 @@ std::uint32_t seed_parameter(ParameterList& parameters) {
 
 void require_known(const std::set<std::string>& names, const std::string& kind, const ParameterList& parameters) {
     if (!names.contains(kind))
-        fail_at(parameters.where(), "{} is not known.", parameters.owner());
+        fail_at(parameters.where(), "{} is not known", parameters.owner());
 }
 
 } // namespace
@@ -41,18 +39,18 @@ void require_known(const std::set<std::string>& names, const std::string& kind, 
 void SceneBuilder::camera(const std::string& kind, ParameterList parameters) {
     require_options("Camera", parameters.where());
     if (kind != "perspective")
-        fail_at(parameters.where(), "the camera \"{}\" is not supported.", kind);
+        fail_at(parameters.where(), "the camera \"{}\" is not supported", kind);
     Camera& camera = scene_.camera;
     camera = Camera{};
     camera.camera_to_world = with_location(parameters.where(), [&] { return inverse_transform(state_.ctm); });
     coordinate_systems_["camera"] = camera.camera_to_world;
     camera.fov_degrees = parameters.number("fov", 90.0);
     if (camera.fov_degrees <= 0.0 || camera.fov_degrees >= 180.0)
-        fail_at(parameters.where("fov"), "\"fov\" is {}, but it must lie between 0 and 180 degrees.",
+        fail_at(parameters.where("fov"), "\"fov\" is {}, but it must lie between 0 and 180 degrees",
                 camera.fov_degrees);
     camera.lens_radius = parameters.number("lensradius", 0.0);
     if (camera.lens_radius < 0.0)
-        fail_at(parameters.where("lensradius"), "\"lensradius\" is {}, but it must not be negative.",
+        fail_at(parameters.where("lensradius"), "\"lensradius\" is {}, but it must not be negative",
                 camera.lens_radius);
     camera.focal_distance = positive_number(parameters, "focaldistance", 1e6);
     if (parameters.has("frameaspectratio")) {
@@ -64,12 +62,12 @@ void SceneBuilder::camera(const std::string& kind, ParameterList parameters) {
     if (parameters.has("screenwindow")) {
         const std::vector<double> window = parameters.numbers("screenwindow");
         if (window.size() != 4 || window[0] >= window[1] || window[2] >= window[3])
-            fail_at(parameters.where("screenwindow"), "\"screenwindow\" takes four numbers: x0 < x1 and y0 < y1.");
+            fail_at(parameters.where("screenwindow"), "\"screenwindow\" takes four numbers: x0 < x1 and y0 < y1");
         camera.screen_window = {window[0], window[1], window[2], window[3]};
     }
     for (const char* name : {"shutteropen", "shutterclose"}) {
         if (parameters.ignore(name))
-            note(parameters.where(name), fmt::format("\"{}\" is ignored: nothing moves.", name));
+            note(parameters.where(name), fmt::format("\"{}\" is ignored: nothing moves", name));
     }
     parameters.finish();
     has_camera_ = true;
@@ -78,29 +76,29 @@ void SceneBuilder::camera(const std::string& kind, ParameterList parameters) {
 void SceneBuilder::film(const std::string& kind, ParameterList parameters) {
     require_options("Film", parameters.where());
     if (kind != "rgb")
-        fail_at(parameters.where(), "the film \"{}\" is not supported.", kind);
+        fail_at(parameters.where(), "the film \"{}\" is not supported", kind);
     RenderSettings& settings = scene_.settings;
     settings.width = positive_integer(parameters, "xresolution", 1280);
     settings.height = positive_integer(parameters, "yresolution", 720);
     settings.filename = parameters.text("filename", settings.filename);
     for (const char* name : {"cropwindow", "pixelbounds"}) {
         if (parameters.has(name))
-            fail_at(parameters.where(name), "\"{}\" of {} is not supported.", name, parameters.owner());
+            fail_at(parameters.where(name), "\"{}\" of {} is not supported", name, parameters.owner());
     }
     const std::string sensor = parameters.text("sensor", "cie1931");
     if (sensor != "cie1931")
-        fail_at(parameters.where("sensor"), "the sensor \"{}\" is not supported.", sensor);
+        fail_at(parameters.where("sensor"), "the sensor \"{}\" is not supported", sensor);
     // pbrt-v4 multiplies the image by this ratio.
     const double imaging_ratio = parameters.number("iso", 100.0) * parameters.number("exposuretime", 1.0) / 100.0;
     if (std::abs(imaging_ratio - 1.0) > 1e-6)
         fail_at(parameters.where(parameters.has("iso") ? "iso" : "exposuretime"),
-                "\"iso\" times \"exposuretime\" of {} must be 100: other exposures are not supported.",
+                "\"iso\" times \"exposuretime\" of {} must be 100: other exposures are not supported",
                 parameters.owner());
     if (parameters.number("whitebalance", 0.0) != 0.0)
-        fail_at(parameters.where("whitebalance"), "\"whitebalance\" of {} is not supported.", parameters.owner());
+        fail_at(parameters.where("whitebalance"), "\"whitebalance\" of {} is not supported", parameters.owner());
     for (const char* name : {"savefp16", "diagonal", "maxcomponentvalue"}) {
         if (parameters.ignore(name))
-            note(parameters.where(name), fmt::format("\"{}\" of {} is ignored.", name, parameters.owner()));
+            note(parameters.where(name), fmt::format("\"{}\" of {} is ignored", name, parameters.owner()));
     }
     parameters.finish();
 }
@@ -110,7 +108,7 @@ void SceneBuilder::sampler(const std::string& kind, ParameterList parameters) {
     require_known({"halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"}, kind,
                   parameters);
     note(parameters.where(),
-         fmt::format("{} is ignored but for its number of samples and its seed.", parameters.owner()));
+         fmt::format("{} is ignored but for its number of samples and its seed", parameters.owner()));
     RenderSettings& settings = scene_.settings;
     if (kind == "stratified")
         settings.passes = positive_integer(parameters, "xsamples", 4) * positive_integer(parameters, "ysamples", 4);
@@ -126,7 +124,7 @@ void SceneBuilder::sampler(const std::string& kind, ParameterList parameters) {
 void SceneBuilder::pixel_filter(const std::string& kind, ParameterList parameters) {
     require_options("PixelFilter", parameters.where());
     require_known({"box", "gaussian", "mitchell", "sinc", "triangle"}, kind, parameters);
-    note(parameters.where(), fmt::format("{} is ignored: pixels are boxes.", parameters.owner()));
+    note(parameters.where(), fmt::format("{} is ignored: pixels are boxes", parameters.owner()));
     for (const char* name : {"xradius", "yradius", "sigma", "B", "C", "tau"})
         parameters.ignore(name);
     parameters.finish();
@@ -135,7 +133,7 @@ void SceneBuilder::pixel_filter(const std::string& kind, ParameterList parameter
 void SceneBuilder::accelerator(const std::string& kind, ParameterList parameters) {
     require_options("Accelerator", parameters.where());
     require_known({"bvh", "kdtree"}, kind, parameters);
-    note(parameters.where(), fmt::format("{} is ignored.", parameters.owner()));
+    note(parameters.where(), fmt::format("{} is ignored", parameters.owner()));
     parameters.ignore_rest();
 }
 
@@ -146,7 +144,7 @@ void SceneBuilder::integrator(const std::string& kind, ParameterList parameters)
     RenderSettings& settings = scene_.settings;
     settings.max_depth = positive_integer(parameters, "maxdepth", 5);
     if (kind != "sppm") {
-        note(parameters.where(), fmt::format("{} is ignored but for \"maxdepth\".", parameters.owner()));
+        note(parameters.where(), fmt::format("{} is ignored but for \"maxdepth\"", parameters.owner()));
         parameters.ignore_rest();
         return;
     }
@@ -176,13 +174,13 @@ void SceneBuilder::option(const std::string& name, ParameterList parameters) {
                                                   "rendercoordsys",
                                                   "wavefront"};
     if (!without_effect.contains(name))
-        fail_at(parameters.where(), "the option \"{}\" is not supported.", name);
-    note(parameters.where(), fmt::format("the option \"{}\" is ignored.", name));
+        fail_at(parameters.where(), "the option \"{}\" is not supported", name);
+    note(parameters.where(), fmt::format("the option \"{}\" is ignored", name));
 }
 
 void SceneBuilder::color_space(const std::string& name, const SourceLocation& where) {
     if (name != "srgb")
-        fail_at(where, "the colour space \"{}\" is not supported: \"rgb\" values are read as linear sRGB.", name);
+        fail_at(where, "the colour space \"{}\" is not supported: \"rgb\" values are read as linear sRGB", name);
 }
 
 } // namespace tristim

@@ -29,18 +29,18 @@ std::string SceneBuilder::resolve_path(const std::string& name, const SourceLoca
 
 void SceneBuilder::require_world(const std::string& directive, const SourceLocation& where) const {
     if (!in_world_)
-        fail_at(where, "\"{}\" must come after \"WorldBegin\".", directive);
+        fail_at(where, "\"{}\" must come after \"WorldBegin\"", directive);
 }
 
 void SceneBuilder::require_options(const std::string& directive, const SourceLocation& where) const {
     if (in_world_)
-        fail_at(where, "\"{}\" must come before \"WorldBegin\".", directive);
+        fail_at(where, "\"{}\" must come before \"WorldBegin\"", directive);
 }
 
 void SceneBuilder::coord_sys_transform(const std::string& name, const SourceLocation& where) {
     const auto it = coordinate_systems_.find(name);
     if (it == coordinate_systems_.end())
-        fail_at(where, "no coordinate system \"{}\" is defined.", name);
+        fail_at(where, "no coordinate system \"{}\" is defined", name);
     state_.ctm = it->second;
 }
 
@@ -64,7 +64,7 @@ void SceneBuilder::transform_begin(const SourceLocation& where) {
 SceneBuilder::GraphicsState SceneBuilder::take_saved(SavedState::Kind kind, const char* begin, const char* end,
                                                      const SourceLocation& where) {
     if (saved_.empty() || saved_.back().kind != kind)
-        fail_at(where, "\"{}\" closes no \"{}\".", end, begin);
+        fail_at(where, "\"{}\" closes no \"{}\"", end, begin);
     GraphicsState state = std::move(saved_.back().state);
     saved_.pop_back();
     return state;
@@ -86,9 +86,9 @@ void SceneBuilder::reverse_orientation(const SourceLocation& where) {
 void SceneBuilder::object_begin(const std::string& name, const SourceLocation& where) {
     require_world("ObjectBegin", where);
     if (!open_object_.empty())
-        fail_at(where, "\"ObjectBegin\" stands inside the object \"{}\".", open_object_);
+        fail_at(where, "\"ObjectBegin\" stands inside the object \"{}\"", open_object_);
     if (name.empty() || objects_.contains(name))
-        fail_at(where, "the object \"{}\" {}.", name, name.empty() ? "has no name" : "is defined already");
+        fail_at(where, "the object \"{}\" {}", name, name.empty() ? "has no name" : "is defined already");
     saved_.push_back({SavedState::Kind::Object, state_, where});
     open_object_ = name;
     objects_[name];
@@ -102,10 +102,10 @@ void SceneBuilder::object_end(const SourceLocation& where) {
 void SceneBuilder::object_instance(const std::string& name, const SourceLocation& where) {
     require_world("ObjectInstance", where);
     if (!open_object_.empty())
-        fail_at(where, "\"ObjectInstance\" inside the object \"{}\" is not supported.", open_object_);
+        fail_at(where, "\"ObjectInstance\" inside the object \"{}\" is not supported", open_object_);
     const auto it = objects_.find(name);
     if (it == objects_.end())
-        fail_at(where, "no object \"{}\" is defined.", name);
+        fail_at(where, "no object \"{}\" is defined", name);
     for (const ObjectPart& part : it->second) {
         const Geometry world = with_location(where, [&] { return transformed(part.geometry, state_.ctm, false); });
         add_shape(world, part.material, nullptr, where);
@@ -134,10 +134,10 @@ void SceneBuilder::make_named_material(const std::string& name, ParameterList pa
     require_world("MakeNamedMaterial", parameters.where());
     NamedMaterial& entry = find_named_material(name, parameters.where());
     if (entry.defined)
-        fail_at(parameters.where(), "the material \"{}\" is defined already.", name);
+        fail_at(parameters.where(), "the material \"{}\" is defined already", name);
     const std::string kind = parameters.text("type", "");
     if (kind.empty())
-        fail_at(parameters.where(), "{} has no parameter \"string type\".", parameters.owner());
+        fail_at(parameters.where(), "{} has no parameter \"string type\"", parameters.owner());
     const auto resolve = [this](const std::string& file, const SourceLocation& from) {
         return resolve_path(file, from);
     };
@@ -155,7 +155,7 @@ void SceneBuilder::named_material(const std::string& name, const SourceLocation&
 void SceneBuilder::light_source(const std::string& kind, ParameterList parameters) {
     require_world("LightSource", parameters.where());
     if (!open_object_.empty())
-        fail_at(parameters.where(), "a light inside the object \"{}\" is not supported.", open_object_);
+        fail_at(parameters.where(), "a light inside the object \"{}\" is not supported", open_object_);
     const auto resolve = [this](const std::string& name, const SourceLocation& from) {
         return resolve_path(name, from);
     };
@@ -173,7 +173,7 @@ void SceneBuilder::area_light_source(const std::string& kind, ParameterList para
 void SceneBuilder::shape(const std::string& kind, ParameterList parameters) {
     require_world("Shape", parameters.where());
     if (!open_object_.empty() && state_.area_light)
-        fail_at(parameters.where(), "an area light inside the object \"{}\" is not supported.", open_object_);
+        fail_at(parameters.where(), "an area light inside the object \"{}\" is not supported", open_object_);
     const auto resolve = [this](const std::string& name, const SourceLocation& from) {
         return resolve_path(name, from);
     };
@@ -219,18 +219,11 @@ void SceneBuilder::add_shape(const Geometry& world, int material, const AreaLigh
     BakedMesh baked = with_location(where, [&] { return bake(world); });
     if (baked.degenerate > 0)
         note(where,
-             fmt::format("dropped {} degenerate triangle{}.", baked.degenerate, baked.degenerate == 1 ? "" : "s"));
+             fmt::format("dropped {} degenerate triangle{}", baked.degenerate, baked.degenerate == 1 ? "" : "s"));
     if (area_light && area(baked.mesh) <= 0.0)
-        fail_at(where, "zero-area light: the surface that should emit has no area.");
+        fail_at(where, "zero-area light: the surface that should emit has no area");
     if (baked.mesh.triangles.empty())
         return;
-    if (material < 0) {
-        Material fallback;
-        fallback.name = "default";
-        material = find_named_material("", where).index;
-        scene_.materials[static_cast<std::size_t>(material)] = fallback;
-        named_materials_.at("").defined = true;
-    }
     std::vector<Mesh> meshes;
     if (area_light && area_light->power)
         meshes = split_patches(baked);
@@ -242,8 +235,16 @@ void SceneBuilder::add_shape(const Geometry& world, int material, const AreaLigh
             scene_.lights.push_back(light_of_area(*area_light, area(mesh)));
             light = static_cast<int>(scene_.lights.size()) - 1;
         }
-        scene_.shapes.push_back({std::move(mesh), material, light});
+        scene_.shapes.push_back({std::move(mesh), material < 0 ? default_material() : material, light});
     }
+}
+
+int SceneBuilder::default_material() {
+    if (default_material_ < 0) {
+        scene_.materials.emplace_back().name = "default";
+        default_material_ = static_cast<int>(scene_.materials.size()) - 1;
+    }
+    return default_material_;
 }
 
 void SceneBuilder::remove_unused_materials() {
@@ -262,21 +263,21 @@ void SceneBuilder::remove_unused_materials() {
 
 Scene SceneBuilder::finish() {
     if (!saved_.empty())
-        fail_at(saved_.back().where, "the block that begins here is never closed.");
+        fail_at(saved_.back().where, "the block that begins here is never closed");
     if (!has_camera_)
-        fail("{}: the scene has no camera.", scene_.path);
+        fail("{}: the scene has no camera", scene_.path);
     if (!in_world_)
-        fail("{}: the scene has no \"WorldBegin\".", scene_.path);
+        fail("{}: the scene has no \"WorldBegin\"", scene_.path);
     for (const auto& [name, entry] : named_materials_) {
         if (!entry.defined)
-            fail_at(entry.where, "no material \"{}\" is defined.", name);
+            fail_at(entry.where, "no material \"{}\" is defined", name);
     }
     if (scene_.lights.empty())
-        fail("{}: the scene has no light.", scene_.path);
+        fail("{}: the scene has no light", scene_.path);
     const bool sky = std::any_of(scene_.lights.begin(), scene_.lights.end(),
                                  [](const Light& light) { return light.kind == Light::Kind::Infinite; });
     if (scene_.shapes.empty() && !sky)
-        fail("{}: the scene has no geometry.", scene_.path);
+        fail("{}: the scene has no geometry", scene_.path);
     remove_unused_materials();
     return std::move(scene_);
 }

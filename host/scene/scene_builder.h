@@ -88,6 +88,7 @@ class SceneBuilder {
     void note(const SourceLocation& where, const std::string& text);
     NamedMaterial& find_named_material(const std::string& name, const SourceLocation& where);
     void add_shape(const Geometry& world, int material, const AreaLight* area_light, const SourceLocation& where);
+    int default_material();
     void remove_unused_materials();
 
     Scene scene_;
@@ -97,7 +98,8 @@ class SceneBuilder {
     std::map<std::string, M44d> coordinate_systems_;
     std::map<std::string, NamedMaterial> named_materials_;
     std::map<std::string, std::vector<ObjectPart>> objects_;
-    std::string open_object_; ///< the name between ObjectBegin and ObjectEnd
+    std::string open_object_;   ///< the name between ObjectBegin and ObjectEnd
+    int default_material_ = -1; ///< index into scene_.materials once a shape needs it
     bool in_world_ = false;
     bool has_camera_ = false;
 };

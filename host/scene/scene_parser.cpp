@@ -40,7 +40,7 @@ SceneParser::SceneParser(const std::string& path, SceneBuilder& builder) : build
 void SceneParser::run() {
     for (Token token = next(); token.kind != Token::Kind::End; token = next()) {
         if (token.kind != Token::Kind::Word)
-            fail_at(token.where, "\"{}\" stands where a directive is expected.", token.text);
+            fail_at(token.where, "\"{}\" stands where a directive is expected", token.text);
         directive(token);
     }
 }
@@ -70,9 +70,9 @@ void SceneParser::directive(const Token& word) {
     if (word.text == "Include")
         include(word);
     else if (unsupported_directives.contains(word.text))
-        fail_at(word.where, "the directive \"{}\" is not supported.", word.text);
+        fail_at(word.where, "the directive \"{}\" is not supported", word.text);
     else if (!transform_directive(word) && !simple_directive(word) && !plugin_directive(word))
-        fail_at(word.where, "unknown directive \"{}\".", word.text);
+        fail_at(word.where, "unknown directive \"{}\"", word.text);
 }
 
 bool SceneParser::transform_directive(const Token& word) {
@@ -87,7 +87,7 @@ bool SceneParser::transform_directive(const Token& word) {
         const double degrees = expect_number(word);
         const V3d axis = expect_triple(word);
         if (axis.length2() == 0.0)
-            fail_at(word.where, "the axis of \"Rotate\" is zero.");
+            fail_at(word.where, "the axis of \"Rotate\" is zero");
         builder_.concat_transform(rotation(degrees, axis));
     } else if (name == "LookAt") {
         const V3d eye = expect_triple(word);
@@ -156,7 +156,7 @@ bool SceneParser::plugin_directive(const Token& word) {
     if (word.text == "Option") {
         const Token declaration = next();
         if (declaration.kind != Token::Kind::String)
-            fail_at(word.where, "\"Option\" must be followed by \"type name\" in quotes, not by \"{}\".",
+            fail_at(word.where, "\"Option\" must be followed by \"type name\" in quotes, not by \"{}\"",
                     declaration.text);
         ParameterList option("Option", word.where);
         Parameter value = parameter(declaration, "Option");
@@ -180,14 +180,14 @@ void SceneParser::include(const Token& word) {
     const bool circular =
         std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file->path() == path; });
     if (circular)
-        fail_at(word.where, "the file \"{}\" includes itself.", name);
+        fail_at(word.where, "the file \"{}\" includes itself", name);
     files_.push_back(with_location(word.where, [&] { return std::make_unique<Tokenizer>(path); }));
 }
 
 std::string SceneParser::expect_string(const Token& directive) {
     Token token = next();
     if (token.kind != Token::Kind::String)
-        fail_at(directive.where, "\"{}\" must be followed by a name in quotes, not by \"{}\".", directive.text,
+        fail_at(directive.where, "\"{}\" must be followed by a name in quotes, not by \"{}\"", directive.text,
                 token.text);
     return std::move(token.text);
 }
@@ -196,7 +196,7 @@ double SceneParser::expect_number(const Token& directive) {
     const Token token = next();
     const std::optional<double> value = token.kind == Token::Kind::Word ? parse_number(token.text) : std::nullopt;
     if (!value)
-        fail_at(token.where, "\"{}\" in \"{}\" is not a finite number.", token.text, directive.text);
+        fail_at(token.where, "\"{}\" in \"{}\" is not a finite number", token.text, directive.text);
     return *value;
 }
 
@@ -210,11 +210,11 @@ V3d SceneParser::expect_triple(const Token& directive) {
 std::array<double, 16> SceneParser::expect_matrix(const Token& directive) {
     std::array<double, 16> values{};
     if (next().kind != Token::Kind::OpenBracket)
-        fail_at(directive.where, "\"{}\" must be followed by 16 numbers in brackets.", directive.text);
+        fail_at(directive.where, "\"{}\" must be followed by 16 numbers in brackets", directive.text);
     for (double& value : values)
         value = expect_number(directive);
     if (next().kind != Token::Kind::CloseBracket)
-        fail_at(directive.where, "\"{}\" must be followed by 16 numbers in brackets.", directive.text);
+        fail_at(directive.where, "\"{}\" must be followed by 16 numbers in brackets", directive.text);
     return values;
 }
 
@@ -235,24 +235,24 @@ Parameter SceneParser::parameter(const Token& declaration, const std::string& ow
     const std::size_t end = text.find_last_not_of(" \t");
     if (begin == std::string::npos || gap == std::string::npos || name == std::string::npos ||
         text.find_first_of(" \t", name) <= end)
-        fail_at(result.where, "\"{}\" of {} does not read \"type name\".", text, owner);
+        fail_at(result.where, "\"{}\" of {} does not read \"type name\"", text, owner);
     result.type = text.substr(begin, gap - begin);
     result.name = text.substr(name, end + 1 - name);
     if (!number_types.contains(result.type) && result.type != "string" && result.type != "texture" &&
         result.type != "bool" && result.type != "spectrum")
-        fail_at(result.where, "the parameter \"{}\" of {} has the unknown type \"{}\".", result.name, owner,
+        fail_at(result.where, "the parameter \"{}\" of {} has the unknown type \"{}\"", result.name, owner,
                 result.type);
 
     Token token = next();
     if (token.kind == Token::Kind::OpenBracket) {
         for (token = next(); token.kind != Token::Kind::CloseBracket; token = next()) {
             if (token.kind == Token::Kind::End || token.kind == Token::Kind::OpenBracket)
-                fail_at(result.where, "the values of the parameter \"{}\" of {} have no closing bracket.", result.name,
+                fail_at(result.where, "the values of the parameter \"{}\" of {} have no closing bracket", result.name,
                         owner);
             add_value(result, token);
         }
     } else if (token.kind == Token::Kind::End || token.kind == Token::Kind::CloseBracket) {
-        fail_at(result.where, "the parameter \"{}\" of {} has no value.", result.name, owner);
+        fail_at(result.where, "the parameter \"{}\" of {} has no value", result.name, owner);
     } else {
         add_value(result, token);
     }
@@ -263,7 +263,7 @@ void SceneParser::add_value(Parameter& parameter, const Token& value) const {
     const bool quoted = value.kind == Token::Kind::String;
     if (parameter.type == "bool") {
         if (value.text != "true" && value.text != "false")
-            fail_at(value.where, "\"{}\" in the parameter \"{}\" is neither true nor false.", value.text,
+            fail_at(value.where, "\"{}\" in the parameter \"{}\" is neither true nor false", value.text,
                     parameter.name);
         parameter.bools.push_back(value.text == "true");
         return;
@@ -277,11 +277,11 @@ void SceneParser::add_value(Parameter& parameter, const Token& value) const {
     const bool takes_numbers = parameter.type == "spectrum" || number_types.contains(parameter.type);
     const std::optional<double> number = quoted || !takes_numbers ? std::nullopt : parse_number(value.text);
     if (!number)
-        fail_at(value.where, "\"{}\" in the parameter \"{}\" is not a {}.", value.text, parameter.name,
+        fail_at(value.where, "\"{}\" in the parameter \"{}\" is not a {}", value.text, parameter.name,
                 takes_numbers ? "finite number" : "string in quotes");
     if (parameter.type == "integer" &&
         (*number != std::floor(*number) || std::abs(*number) > std::numeric_limits<int>::max()))
-        fail_at(value.where, "\"{}\" in the parameter \"{}\" is not an integer.", value.text, parameter.name);
+        fail_at(value.where, "\"{}\" in the parameter \"{}\" is not an integer", value.text, parameter.name);
     parameter.numbers.push_back(*number);
 }
 

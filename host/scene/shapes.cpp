@@ -22,7 +22,7 @@ constexpr double planar_tolerance = 1e-6;
 void check_indices(const std::vector<int>& indices, std::size_t vertices, const SourceLocation& where) {
     for (const int index : indices) {
         if (index < 0 || static_cast<std::size_t>(index) >= vertices)
-            fail_at(where, "the index {} in \"indices\" is out of range: the mesh has {} vertices.", index, vertices);
+            fail_at(where, "the index {} in \"indices\" is out of range: the mesh has {} vertices", index, vertices);
     }
 }
 
@@ -30,21 +30,21 @@ void check_indices(const std::vector<int>& indices, std::size_t vertices, const 
 std::vector<int> read_vertices(Geometry& geometry, ParameterList& parameters, std::size_t corners) {
     geometry.positions = parameters.points("P");
     if (geometry.positions.empty())
-        fail_at(parameters.where(), "{} has no vertices: the parameter \"point3 P\" is missing.", parameters.owner());
+        fail_at(parameters.where(), "{} has no vertices: the parameter \"point3 P\" is missing", parameters.owner());
     geometry.normals = parameters.normals("N");
     if (!geometry.normals.empty() && geometry.normals.size() != geometry.positions.size())
-        fail_at(parameters.where("N"), "\"N\" has {} normals for {} vertices.", geometry.normals.size(),
+        fail_at(parameters.where("N"), "\"N\" has {} normals for {} vertices", geometry.normals.size(),
                 geometry.positions.size());
     std::vector<int> indices = parameters.integers("indices");
     if (!parameters.has("indices")) {
         if (geometry.positions.size() != corners)
-            fail_at(parameters.where(), "{} has {} vertices, and only with {} may \"indices\" be left out.",
+            fail_at(parameters.where(), "{} has {} vertices, and only with {} may \"indices\" be left out",
                     parameters.owner(), geometry.positions.size(), corners);
         indices.resize(corners);
         std::iota(indices.begin(), indices.end(), 0);
     }
     if (indices.empty() || indices.size() % corners != 0)
-        fail_at(parameters.where("indices"), "\"indices\" takes groups of {}, but {} are given.", corners,
+        fail_at(parameters.where("indices"), "\"indices\" takes groups of {}, but {} are given", corners,
                 indices.size());
     check_indices(indices, geometry.positions.size(), parameters.where("indices"));
     for (const char* name : {"uv", "S", "faceIndices"})
@@ -81,19 +81,22 @@ void check_patch(const std::vector<V3d>& positions, const int* index, const Sour
         normal += turns[i];
         size2 = std::max({size2, edge.length2(), (ring[(i + 2) % 4] - ring[i]).length2()});
     }
+    const bool has_no_side = normal.length() <= planar_tolerance * size2;
     normal.normalize();
     for (std::size_t i = 0; i < 4; ++i) {
+        if (has_no_side && turns[i].length() > planar_tolerance * size2)
+            fail_at(where, "a patch of \"bilinearmesh\" is not convex");
         if (std::abs((ring[i] - ring[0]).dot(normal)) > planar_tolerance * std::sqrt(size2))
-            fail_at(where, "a patch of \"bilinearmesh\" is not planar, and curved patches are not supported.");
+            fail_at(where, "a patch of \"bilinearmesh\" is not planar, and curved patches are not supported");
         if (turns[i].dot(normal) < -planar_tolerance * size2)
-            fail_at(where, "a patch of \"bilinearmesh\" is not convex.");
+            fail_at(where, "a patch of \"bilinearmesh\" is not convex");
     }
 }
 
 Geometry bilinear_mesh(ParameterList& parameters) {
     Geometry geometry;
     if (parameters.has("emissionfilename"))
-        fail_at(parameters.where("emissionfilename"), "\"emissionfilename\": image lights are not supported.");
+        fail_at(parameters.where("emissionfilename"), "\"emissionfilename\": image lights are not supported");
     const std::vector<int> indices = read_vertices(geometry, parameters, 4);
     for (std::size_t i = 0; i < indices.size(); i += 4) {
         const int* patch = &indices[i];
@@ -107,11 +110,11 @@ Geometry bilinear_mesh(ParameterList& parameters) {
 Geometry sphere(ParameterList& parameters) {
     const double radius = parameters.number("radius", 1.0);
     if (radius <= 0.0)
-        fail_at(parameters.where("radius"), "\"radius\" is {}, but it must be positive.", radius);
+        fail_at(parameters.where("radius"), "\"radius\" is {}, but it must be positive", radius);
     const bool partial = parameters.number("zmin", -radius) > -radius || parameters.number("zmax", radius) < radius ||
                          parameters.number("phimax", 360.0) < 360.0;
     if (partial)
-        fail_at(parameters.where(), "{}: only full spheres are supported, without \"zmin\", \"zmax\" and \"phimax\".",
+        fail_at(parameters.where(), "{}: only full spheres are supported, without \"zmin\", \"zmax\" and \"phimax\"",
                 parameters.owner());
     Geometry geometry;
     const Icosphere unit = make_icosphere(sphere_subdivisions);
@@ -127,12 +130,12 @@ Geometry mesh_file(const std::string& kind, ParameterList& parameters, const Pat
                    std::vector<std::string>& remarks) {
     const std::string name = parameters.text("filename", "");
     if (name.empty())
-        fail_at(parameters.where(), "{} has no \"filename\".", parameters.owner());
+        fail_at(parameters.where(), "{} has no \"filename\"", parameters.owner());
     const MeshFormat format = kind == "plymesh" ? MeshFormat::Ply : MeshFormat::Obj;
     const SourceLocation where = parameters.where("filename");
     const MeshFile file = with_location(where, [&] { return read_mesh(resolve(name, where), format); });
     if (file.degenerate_faces > 0)
-        remarks.push_back(fmt::format("dropped {} degenerate face{} of \"{}\".", file.degenerate_faces,
+        remarks.push_back(fmt::format("dropped {} degenerate face{} of \"{}\"", file.degenerate_faces,
                                       file.degenerate_faces == 1 ? "" : "s", name));
     Geometry geometry;
     geometry.positions.assign(file.positions.begin(), file.positions.end());
@@ -156,7 +159,7 @@ Geometry make_shape(const std::string& kind, ParameterList& parameters, const Pa
     else if (kind == "plymesh" || kind == "objmesh")
         geometry = mesh_file(kind, parameters, resolve, remarks);
     else
-        fail_at(parameters.where(), "the shape \"{}\" is not supported.", kind);
+        fail_at(parameters.where(), "the shape \"{}\" is not supported", kind);
     parameters.finish();
     return geometry;
 }

@@ -10,18 +10,18 @@ namespace tristim {
 
 namespace {
 
-/// What an "rgb" triple stands for; pbrt's SpectrumType.
+/// How an "rgb" triple becomes a spectrum; pbrt's SpectrumType.
 using RgbUpsampling = Spectrum (*)(const std::array<double, 3>&);
 
 bool is_file_name(const std::string& name) {
     return name.ends_with(".spd") || name.find('/') != std::string::npos;
 }
 
-/// The samples of "spectrum" pairs. std::vector::front of an odd list never gets here.
+/// A spectrum from its "wavelength value" pairs.
 Spectrum from_pairs(const Parameter& parameter) {
     const std::vector<double>& numbers = parameter.numbers;
     if (numbers.empty() || numbers.size() % 2 != 0)
-        fail_at(parameter.where, "the spectrum \"{}\" takes pairs of wavelength and value, but {} numbers are given.",
+        fail_at(parameter.where, "the spectrum \"{}\" takes pairs of wavelength and value, but {} numbers are given",
                 parameter.name, numbers.size());
     std::vector<double> lambda, values;
     for (std::size_t i = 0; i < numbers.size(); i += 2) {
@@ -33,7 +33,7 @@ Spectrum from_pairs(const Parameter& parameter) {
 
 std::array<double, 3> rgb_of(const Parameter& parameter) {
     if (parameter.numbers.size() != 3)
-        fail_at(parameter.where, "the colour \"{}\" takes three numbers, but {} are given.", parameter.name,
+        fail_at(parameter.where, "the colour \"{}\" takes three numbers, but {} are given", parameter.name,
                 parameter.numbers.size());
     return {parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]};
 }
@@ -44,14 +44,14 @@ Spectrum to_spectrum(const Parameter& parameter, RgbUpsampling upsample, const P
             return upsample(rgb_of(parameter));
         if (parameter.type == "blackbody") {
             if (parameter.numbers.size() != 1)
-                fail("the blackbody \"{}\" takes one temperature, but {} numbers are given.", parameter.name,
+                fail("the blackbody \"{}\" takes one temperature, but {} numbers are given", parameter.name,
                      parameter.numbers.size());
             return Spectrum::blackbody(parameter.numbers[0]);
         }
         if (parameter.strings.empty())
             return from_pairs(parameter);
         if (parameter.strings.size() != 1 || !parameter.numbers.empty())
-            fail("the spectrum \"{}\" takes one name or pairs of numbers.", parameter.name);
+            fail("the spectrum \"{}\" takes one name or pairs of numbers", parameter.name);
         const std::string& name = parameter.strings.front();
         return is_file_name(name) ? Spectrum::read_spd(resolve(name, parameter.where)) : Spectrum::named(name);
     });
@@ -78,7 +78,7 @@ std::optional<Spectrum> reflectance_parameter(ParameterList& parameters, const s
     // A sigmoid of a saturated colour may round to just above 1.
     constexpr double rounding = 1e-9;
     if (const auto nm = first_violation(spectrum, [](double r) { return r >= -rounding && r <= 1.0 + rounding; }))
-        fail_at(parameter->where, "the reflectance \"{}\" is {} at {} nm, outside [0, 1].", name, spectrum(*nm), *nm);
+        fail_at(parameter->where, "the reflectance \"{}\" is {} at {} nm, outside [0, 1]", name, spectrum(*nm), *nm);
     return spectrum;
 }
 
@@ -90,11 +90,11 @@ std::optional<Spectrum> index_parameter(ParameterList& parameters, const std::st
     Spectrum spectrum = to_spectrum(*parameter, &Spectrum::rgb_unbounded, resolve);
     const auto [from, to] = spectrum.range_nm();
     if (from > lambda_min_nm || to < lambda_max_nm)
-        fail_at(parameter->where, "the spectrum \"{}\" covers only {} to {} nm, not all of {} to {} nm.", name, from,
-                to, lambda_min_nm, lambda_max_nm);
+        fail_at(parameter->where, "the spectrum \"{}\" covers only {} to {} nm, not all of {} to {} nm", name, from, to,
+                lambda_min_nm, lambda_max_nm);
     const auto positive = [may_be_zero](double value) { return may_be_zero ? value >= 0.0 : value > 0.0; };
     if (const auto nm = first_violation(spectrum, positive))
-        fail_at(parameter->where, "the spectrum \"{}\" is {} at {} nm, where it must be {}.", name, spectrum(*nm), *nm,
+        fail_at(parameter->where, "the spectrum \"{}\" is {} at {} nm, where it must be {}", name, spectrum(*nm), *nm,
                 may_be_zero ? "at least 0" : "positive");
     return spectrum;
 }
@@ -105,12 +105,12 @@ Spectrum emission_parameter(ParameterList& parameters, const std::string& name, 
         parameter ? to_spectrum(*parameter, &Spectrum::rgb_illuminant, resolve) : Spectrum::named("stdillum-D65");
     const SourceLocation where = parameters.where(name);
     if (const auto nm = first_violation(raw, [](double value) { return value >= 0.0; }))
-        fail_at(where, "the emission \"{}\" is negative at {} nm.", name, *nm);
+        fail_at(where, "the emission \"{}\" is negative at {} nm", name, *nm);
     const bool is_rgb = parameter && parameter->type == "rgb";
     const double y = spectrum_to_xyz(raw)[1];
     const double reference = is_rgb ? spectrum_to_xyz(Spectrum::rgb_illuminant_white())[1] : y;
     if (!(y > 0.0))
-        fail_at(where, "the emission \"{}\" is zero over all visible wavelengths.", name);
+        fail_at(where, "the emission \"{}\" is zero over all visible wavelengths", name);
     return raw.scaled(1.0 / reference);
 }
 

@@ -63,12 +63,12 @@ std::string Tokenizer::read_string(const SourceLocation& where) {
                 c = '"';
                 break;
             default:
-                fail_at(where, "unknown escape \"\\{}\" in a string.", source_[position_]);
+                fail_at(where, "unknown escape \"\\{}\" in a string", source_[position_]);
             }
         }
         text += c;
     }
-    fail_at(where, "the string \"{}\" has no closing quote.", text);
+    fail_at(where, "the string \"{}\" has no closing quote", text);
 }
 
 Token Tokenizer::next() {

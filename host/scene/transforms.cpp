@@ -35,9 +35,9 @@ M44d look_at(const V3d& eye, const V3d& target, const V3d& up) {
     const V3d forward = (target - eye).normalized();
     const V3d right = up.normalized().cross(forward).normalized();
     if (forward.length2() == 0.0)
-        fail("the eye and the target of \"LookAt\" are the same point.");
+        fail("the eye and the target of \"LookAt\" are the same point");
     if (right.length2() == 0.0)
-        fail("the up vector of \"LookAt\" is parallel to the viewing direction.");
+        fail("the up vector of \"LookAt\" is parallel to the viewing direction");
     const V3d above = forward.cross(right);
     const M44d world_from_camera(right.x, right.y, right.z, 0, above.x, above.y, above.z, 0, forward.x, forward.y,
                                  forward.z, 0, eye.x, eye.y, eye.z, 1);
@@ -54,7 +54,7 @@ M44d matrix_from_list(const std::array<double, 16>& values) {
 M44d inverse_transform(const M44d& matrix) {
     const double det = determinant(matrix);
     if (det == 0.0 || !std::isfinite(det))
-        fail("the current transformation cannot be inverted.");
+        fail("the current transformation cannot be inverted");
     return matrix.inverse();
 }
 

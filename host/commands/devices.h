@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tristim {
+
+/// Registers `devices`: every OpenCL platform and device.
+void add_devices_command(CLI::App& app);
+
+} // namespace tristim

@@ -1,0 +1,54 @@
+#include "commands/progress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <unistd.h>
+
+namespace tristim {
+
+Progress::Progress(const Limits& limits, int photons_per_pass, bool quiet)
+    : limits_(limits), photons_per_pass_(photons_per_pass), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+std::string Progress::line(std::uint64_t passes) const {
+    const double seconds = std::max(elapsed(), 1e-9);
+    const double photons = static_cast<double>(passes) * photons_per_pass_;
+    double remaining = std::numeric_limits<double>::infinity();
+    if (limits_.passes && passes > 0)
+        remaining = seconds * static_cast<double>(*limits_.passes - passes) / static_cast<double>(passes);
+    if (limits_.seconds)
+        remaining = std::min(remaining, std::max(*limits_.seconds - seconds, 0.0));
+    const std::string total = limits_.passes ? fmt::format("/{}", *limits_.passes) : "";
+    return fmt::format("pass {}{}  photons {:.2f} M  {:.2f} Mphotons/s  elapsed {}  remaining {}", passes, total,
+                       1e-6 * photons, 1e-6 * photons / seconds, format_duration(seconds),
+                       remaining < std::numeric_limits<double>::infinity() ? format_duration(remaining) : "?");
+}
+
+void Progress::update(std::uint64_t passes) {
+    const double interval = terminal_ ? 0.1 : 10.0;
+    const double now = elapsed();
+    if (quiet_ || now - last_shown_ < interval)
+        return;
+    last_shown_ = now;
+    if (terminal_)
+        fmt::print(stderr, "\r\033[K{}", line(passes));
+    else
+        fmt::print(stderr, "{}\n", line(passes));
+    std::fflush(stderr);
+}
+
+void Progress::finish(std::uint64_t passes) {
+    if (!quiet_)
+        fmt::print(stderr, "{}{}\n", terminal_ ? "\r\033[K" : "", line(passes));
+}
+
+std::string format_duration(double seconds) {
+    const auto whole = static_cast<long>(seconds + 0.5);
+    if (whole >= 3600)
+        return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+} // namespace tristim

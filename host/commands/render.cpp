@@ -1,0 +1,152 @@
+#include "commands/render.h"
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "commands/interrupt.h"
+#include "commands/progress.h"
+#include "commands/render_arguments.h"
+#include "image/output_file.h"
+#include "image/write_image.h"
+#include "render/pilot.h"
+#include "render/renderer.h"
+#include "render/stats_json.h"
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+namespace tristim {
+namespace {
+
+constexpr std::uint64_t default_passes = 64;
+
+struct RenderCommand {
+    RenderArguments arguments;
+    std::vector<std::string> outfiles;
+    std::optional<std::uint64_t> passes;
+    std::optional<double> seconds;
+    std::string space = "srgb";
+    std::string tone_mapping = "photographic";
+    double exposure = 0.0;
+    std::string stats;
+    bool quiet = false;
+};
+
+bool is_exr(const std::string& path) { return std::filesystem::path(path).extension() == ".exr"; }
+
+Progress::Limits limits(const RenderCommand& command, const Scene& scene) {
+    if (command.passes && *command.passes == 0)
+        fail("--passes must be at least 1");
+    if (command.seconds && !(*command.seconds > 0.0 && std::isfinite(*command.seconds)))
+        fail("--time must be a positive number of seconds");
+    if (!command.passes && !command.seconds)
+        return {scene.settings.passes ? static_cast<std::uint64_t>(*scene.settings.passes) : default_passes, {}};
+    return {command.passes, command.seconds};
+}
+
+/// Renders passes until a limit is reached or the user interrupts; how many were done.
+std::uint64_t render_passes(Renderer& renderer, const Progress::Limits& limits, bool quiet) {
+    Progress progress(limits, renderer.options().photons_per_pass, quiet);
+    std::uint64_t done = 0;
+    const std::uint64_t most = std::min<std::uint64_t>(limits.passes.value_or(pilot_pass), pilot_pass);
+    while (done < most && !interrupted() && !(limits.seconds && progress.elapsed() >= *limits.seconds && done > 0)) {
+        renderer.render_pass(static_cast<std::uint32_t>(done++));
+        progress.update(done);
+    }
+    progress.finish(done);
+    return done;
+}
+
+ImageMetadata metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples) {
+    const RenderOptions& options = renderer.options();
+    const RenderStatistics& statistics = renderer.statistics();
+    const auto integer = [](auto value) { return static_cast<std::int64_t>(value); };
+    return {{"scene", scene},
+            {"method", options.method.name()},
+            {"sequence", options.random_sequence ? std::string("random") : std::string("stratified")},
+            {"passes", integer(statistics.passes)},
+            {"photons", integer(statistics.photons_emitted)},
+            {"seed", integer(options.seed)},
+            {"device", renderer.device().info.name},
+            {"driver", renderer.device().info.driver},
+            {"seconds_rendering", statistics.render_seconds},
+            {"seconds_building_kernels", statistics.build_kernels_seconds},
+            {"non_finite_samples", integer(rejected_samples)},
+            {"version", std::string(TRISTIM_VERSION)}};
+}
+
+void run(RenderCommand& command) {
+    const Stopwatch loading;
+    const Scene scene = load_scene(command.arguments.scene);
+    const double load_seconds = loading.seconds();
+    const RenderOptions options = resolve_options(command.arguments, scene);
+    const Progress::Limits stop = limits(command, scene);
+    if (command.outfiles.empty())
+        command.outfiles.push_back(scene.settings.filename);
+    for (const std::string& path : command.outfiles)
+        check_writable(path);
+    if (!command.stats.empty())
+        check_output_file(command.stats);
+    if (!command.quiet) {
+        for (const std::string& note : scene.notes)
+            fmt::print(stderr, "note: {}\n", note);
+    }
+
+    catch_interrupts();
+    const Device device = open_device(command.arguments.device);
+    Renderer renderer(scene, options, device);
+    const std::uint64_t passes = render_passes(renderer, stop, command.quiet);
+    if (passes == 0)
+        fail("interrupted before the first pass was done: no image written");
+
+    const FilmImage film = renderer.film();
+    const XyzImage image{film.full_width, film.full_height, film.region, film.xyz};
+    const ColourSpace space = command.space == "xyz" ? ColourSpace::CieXyz : ColourSpace::Srgb;
+    const ToneMapping tone_mapping{
+        command.tone_mapping == "linear" ? ToneMapping::Kind::Linear : ToneMapping::Kind::Photographic, command.exposure};
+    for (const std::string& path : command.outfiles) {
+        if (is_exr(path))
+            write_exr(path, image, space, metadata(renderer, command.arguments.scene, film.rejected_samples));
+        else
+            write_png(path, image, tone_mapping);
+    }
+    if (!command.stats.empty()) {
+        const std::string json =
+            stats_json(renderer, command.arguments.scene, load_seconds, film.rejected_samples).dump(2) + "\n";
+        replace_file(command.stats, {reinterpret_cast<const unsigned char*>(json.data()), json.size()});
+    }
+    if (film.rejected_samples > 0)
+        fmt::print(stderr, "warning: {} samples were not finite and left out\n", film.rejected_samples);
+    if (!command.quiet) {
+        const RenderStatistics& statistics = renderer.statistics();
+        fmt::print(stderr, "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; wrote {}\n",
+                   interrupted() ? "interrupted: " : "", passes, device.info.name, statistics.render_seconds,
+                   statistics.build_kernels_seconds, fmt::join(command.outfiles, ", "));
+    }
+}
+
+} // namespace
+
+void add_render_command(CLI::App& app) {
+    auto command = std::make_shared<RenderCommand>();
+    CLI::App* sub = app.add_subcommand("render", "Render a scene to EXR and PNG images");
+    add_render_arguments(*sub, command->arguments);
+    sub->add_option("--outfile", command->outfiles, "Image to write, may be repeated [the scene's film filename]")
+        ->type_name("FILE.exr|FILE.png")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]");
+    sub->add_option("--time", command->seconds, "Seconds to render; with --passes, the first reached ends the render");
+    sub->add_option("--space", command->space, "Channels of EXR files: linear sRGB (R, G, B) or xyz (X, Y, Z)")
+        ->check(CLI::IsMember({"srgb", "xyz"}))
+        ->capture_default_str();
+    sub->add_option("--tonemap", command->tone_mapping, "Tone mapping of PNG files")
+        ->check(CLI::IsMember({"photographic", "linear"}))
+        ->capture_default_str();
+    sub->add_option("--exposure", command->exposure, "Exposure of PNG files in stops")->capture_default_str();
+    sub->add_option("--stats", command->stats, "Write times, rays and memory as JSON")->type_name("FILE.json");
+    sub->add_flag("--quiet", command->quiet, "No progress, notes or summary; errors still show");
+    sub->callback([command] { run(*command); });
+}
+
+} // namespace tristim

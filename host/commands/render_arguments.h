@@ -1,0 +1,36 @@
+#pragma once
+
+#include "render/options.h"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+
+namespace tristim {
+
+/// The options of `render` that say what is rendered, shared by the commands that render.
+struct RenderArguments {
+    std::string scene;
+    std::string method = "tristimulus:1";
+    std::string sequence = "stratified";
+    std::string resolution;
+    std::string region;
+    std::string direct = "sample";
+    std::string radius = "global";
+    std::string initial_radius;
+    std::string math = "precise";
+    std::string device;
+    std::string dump_kernels;
+    std::optional<int> photons;
+    std::optional<int> max_depth;
+    std::optional<std::uint32_t> seed;
+};
+
+/// Registers SCENE and the options.
+void add_render_arguments(CLI::App& command, RenderArguments& arguments);
+
+/// What the arguments and the scene say together. Throws Error for values that make no sense.
+RenderOptions resolve_options(const RenderArguments& arguments, const Scene& scene);
+
+} // namespace tristim

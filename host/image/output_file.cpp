@@ -1,0 +1,126 @@
+#include "image/output_file.h"
+
+#include "base/error.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+namespace tristim {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_to_write(const std::string& path, const std::string& reason) {
+    fail("cannot write \"{}\": {}", path, reason);
+}
+
+/// Where the bytes go: the target of a symbolic link, or the path itself.
+fs::path final_path(const std::string& path) {
+    std::error_code error;
+    const fs::path target = fs::weakly_canonical(path, error);
+    return error || !fs::is_symlink(path, error) ? fs::path(path) : target;
+}
+
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// An open temporary file that is removed unless it has been renamed.
+class TemporaryFile {
+  public:
+    TemporaryFile(const fs::path& target, std::string user_path)
+        : user_path_(std::move(user_path)),
+          name_(folder_of(target) / fmt::format(".{}.tmp{}", target.filename().string(), ::getpid())) {
+        descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (descriptor_ < 0)
+            fail_to_write(user_path_, std::strerror(errno));
+        struct stat existing {};
+        if (::stat(target.c_str(), &existing) == 0 && ::fchmod(descriptor_, existing.st_mode & 07777) != 0)
+            abandon();
+    }
+
+    ~TemporaryFile() {
+        close();
+        if (!renamed_)
+            ::unlink(name_.c_str());
+    }
+
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    void write(std::span<const unsigned char> bytes) {
+        while (!bytes.empty()) {
+            const ::ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+            if (count < 0 && errno != EINTR)
+                abandon();
+            if (count > 0)
+                bytes = bytes.subspan(static_cast<std::size_t>(count));
+        }
+    }
+
+    void rename_to(const fs::path& target) {
+        if (::fsync(descriptor_) != 0 || close() != 0 || std::rename(name_.c_str(), target.c_str()) != 0)
+            abandon();
+        renamed_ = true;
+    }
+
+  private:
+    /// The destructor does not run for an exception from the constructor.
+    [[noreturn]] void abandon() {
+        const std::string reason = std::strerror(errno);
+        close();
+        ::unlink(name_.c_str());
+        fail_to_write(user_path_, reason);
+    }
+
+    int close() {
+        const int result = descriptor_ >= 0 ? ::close(descriptor_) : 0;
+        descriptor_ = -1;
+        return result;
+    }
+
+    std::string user_path_;
+    fs::path name_;
+    int descriptor_ = -1;
+    bool renamed_ = false;
+};
+
+} // namespace
+
+void check_output_file(const std::string& path) {
+    const fs::path target = final_path(path);
+    const fs::path folder = folder_of(target);
+    std::error_code ignored;
+    if (target.empty() || !target.has_filename())
+        fail_to_write(path, "it names no file");
+    if (!fs::exists(folder, ignored))
+        fail_to_write(path, fmt::format("the folder \"{}\" does not exist", folder.string()));
+    if (!fs::is_directory(folder, ignored))
+        fail_to_write(path, fmt::format("\"{}\" is not a folder", folder.string()));
+    if (fs::is_directory(target, ignored))
+        fail_to_write(path, "it is a folder");
+    if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
+        fail_to_write(path, "it is not a regular file");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        fail_to_write(path,
+                      fmt::format("the folder \"{}\" is not writable ({})", folder.string(), std::strerror(errno)));
+    if (fs::exists(target, ignored) && ::access(target.c_str(), W_OK) != 0)
+        fail_to_write(path, std::strerror(errno));
+}
+
+void replace_file(const std::string& path, std::span<const unsigned char> bytes) {
+    check_output_file(path);
+    const fs::path target = final_path(path);
+    TemporaryFile file(target, path);
+    file.write(bytes);
+    file.rename_to(target);
+}
+
+} // namespace tristim

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace tristim {
+
+/// Throws Error if a file cannot be written at `path`: its folder is missing or not writable, or something other than a
+/// writable file stands there. Meant for the start of a long computation; changes nothing.
+void check_output_file(const std::string& path);
+
+/// Replaces the file as a whole, or leaves what was there: writes a temporary file in the same folder, flushes it to
+/// the disk and renames it. A symbolic link stays and its target is replaced. Throws Error, with the temporary file
+/// removed.
+void replace_file(const std::string& path, std::span<const unsigned char> bytes);
+
+} // namespace tristim

@@ -1,0 +1,44 @@
+#include "render/stats_json.h"
+
+namespace tristim {
+
+nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& scene, double load_seconds,
+                                  std::uint64_t rejected_samples) {
+    const RenderOptions& options = renderer.options();
+    const RenderStatistics& statistics = renderer.statistics();
+    const DeviceInfo& device = renderer.device().info;
+    const RayTotals rays = renderer.rays();
+
+    nlohmann::ordered_json json;
+    json["version"] = TRISTIM_VERSION;
+    json["scene"] = scene;
+    json["method"] = options.method.name();
+    json["sequence"] = options.random_sequence ? "random" : "stratified";
+    json["device"] = device.name;
+    json["platform"] = device.platform;
+    json["driver"] = device.driver;
+    json["resolution"] = {options.width, options.height};
+    json["region"] = {options.region.x, options.region.y, options.region.x + options.region.width,
+                      options.region.y + options.region.height};
+    json["seed"] = options.seed;
+    json["passes"] = statistics.passes;
+    json["photons_per_pass"] = options.photons_per_pass;
+    auto& seconds = json["seconds"];
+    seconds["load"] = load_seconds;
+    seconds["bvh"] = statistics.bvh_seconds;
+    seconds["build_kernels"] = statistics.build_kernels_seconds;
+    seconds["render"] = statistics.render_seconds;
+    for (std::size_t step = 0; step < step_names.size(); ++step)
+        seconds["steps"][step_names[step]] = statistics.step_seconds[step];
+    json["rays"] = {{"camera", rays.camera}, {"shadow", rays.shadow}, {"photon", rays.photon}};
+    json["photons_emitted"] = statistics.photons_emitted;
+    json["photons_stored"] = statistics.photons_stored;
+    json["bytes_per_pixel"] = statistics.bytes_per_pixel;
+    json["bytes_per_photon"] = statistics.bytes_per_photon;
+    for (const auto& [name, bytes] : statistics.buffer_bytes)
+        json["bytes"][name] = bytes;
+    json["non_finite_samples"] = rejected_samples;
+    return json;
+}
+
+} // namespace tristim

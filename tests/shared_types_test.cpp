@@ -1,0 +1,118 @@
+// Host and device must agree on every struct of kernels/shared_types.h: sizes, and offsets of fields.
+
+#include "opencl/buffer.h"
+#include "opencl/program.h"
+#include "shared_types.h"
+
+#include <cstddef>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tristim {
+namespace {
+
+struct Field {
+    std::string type;
+    std::string name;
+    std::size_t struct_size;
+    std::size_t offset;
+};
+
+#define FIELD(type, name) Field{#type, #name, sizeof(type), offsetof(type, name)}
+
+/// The last field of each struct and one after each change of meaning: an offset that is right there is right between.
+const std::vector<Field>& fields() {
+    static const std::vector<Field> list{
+        FIELD(BvhNode, low_x),
+        FIELD(BvhNode, low_z),
+        FIELD(BvhNode, high_x),
+        FIELD(BvhNode, high_z),
+        FIELD(BvhNode, child),
+        FIELD(BvhNode, unused),
+        FIELD(BvhLeaf, v0_x),
+        FIELD(BvhLeaf, v1_x),
+        FIELD(BvhLeaf, v2_x),
+        FIELD(BvhLeaf, v2_z),
+        FIELD(BvhLeaf, id),
+        FIELD(Ray, origin_x),
+        FIELD(Ray, t_max),
+        FIELD(Ray, direction_x),
+        FIELD(Ray, unused),
+        FIELD(RayHit, t),
+        FIELD(RayHit, triangle),
+        FIELD(RayHit, v),
+        FIELD(SceneConstants, camera_x),
+        FIELD(SceneConstants, lens_radius),
+        FIELD(SceneConstants, focal_distance),
+        FIELD(SceneConstants, light_count),
+        FIELD(SceneConstants, region_x),
+        FIELD(SceneConstants, radius),
+        FIELD(SceneConstants, region_y),
+        FIELD(SceneConstants, region_width),
+        FIELD(SceneConstants, infinite_light),
+        FIELD(SceneConstants, image_height),
+        FIELD(Triangle, v0_x),
+        FIELD(Triangle, material),
+        FIELD(Triangle, light),
+        FIELD(Triangle, normals),
+        FIELD(Triangle, normal_x),
+        FIELD(Triangle, unused),
+        FIELD(SurfaceMaterial, kind),
+        FIELD(SurfaceMaterial, dispersive),
+        FIELD(SurfaceMaterial, unused),
+        FIELD(SceneLight, kind),
+        FIELD(SceneLight, probability),
+        FIELD(SceneLight, cos_total_width),
+        FIELD(SceneLight, cos_falloff_start),
+        FIELD(SceneLight, area),
+        FIELD(SceneLight, two_sided),
+        FIELD(SceneLight, unused),
+        FIELD(VisiblePoint, x),
+        FIELD(VisiblePoint, normal),
+        FIELD(VisiblePoint, slot),
+        FIELD(VisiblePoint, radius),
+        FIELD(VisiblePoint, unused),
+        FIELD(Photon, x),
+        FIELD(Photon, normal),
+        FIELD(Photon, flux_x),
+        FIELD(Photon, slot),
+        FIELD(FilmPixel, sum_high),
+        FIELD(FilmPixel, sum_low),
+        FIELD(FilmPixel, square_low),
+        FIELD(FilmPixel, samples),
+        FIELD(FilmPixel, statistics_count),
+    };
+    return list;
+}
+
+#undef FIELD
+
+TEST(SharedTypes, HaveTheSameLayoutOnTheDevice) {
+    std::string source = flatten_kernel_source("shared_types.h") + "kernel void probe_layout(global uint* sizes, "
+                                                                   "global uint* offsets) {\n";
+    for (std::size_t i = 0; i < fields().size(); ++i)
+        source += fmt::format("    {{ {0} s; sizes[{2}] = (uint)sizeof(s); offsets[{2}] = (uint)((char*)&s.{1} - "
+                              "(char*)&s); }}\n",
+                              fields()[i].type, fields()[i].name, i);
+    source += "}\n";
+
+    const Device device = open_device("");
+    ::cl::Program program(device.context, source);
+    ASSERT_NO_THROW(program.build(device.device, "-cl-std=CL1.2"))
+        << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device);
+    const Buffer<cl_uint> sizes(device, "sizes", fields().size());
+    const Buffer<cl_uint> offsets(device, "offsets", fields().size());
+    ::cl::Kernel kernel(program, "probe_layout");
+    kernel.setArg(0, sizes.cl());
+    kernel.setArg(1, offsets.cl());
+    device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(1));
+    const std::vector<cl_uint> device_sizes = sizes.read(device);
+    const std::vector<cl_uint> device_offsets = offsets.read(device);
+    for (std::size_t i = 0; i < fields().size(); ++i) {
+        EXPECT_EQ(device_sizes[i], fields()[i].struct_size) << fields()[i].type;
+        EXPECT_EQ(device_offsets[i], fields()[i].offset) << fields()[i].type << "." << fields()[i].name;
+    }
+}
+
+} // namespace
+} // namespace tristim
