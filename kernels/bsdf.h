@@ -36,15 +36,14 @@ float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* mate
         keep_slot(weight, slot);
 #endif
     const float inside_over_outside = spectrum_row(scene->pass_table, material->eta)[max(weight->slot, 0)];
-    const float eta = dot(direction, it->normal) < 0.0f ? inside_over_outside : 1.0f / inside_over_outside;
-    const float3 n = facing_normal(it, -direction);
-    const float cos_i = min(-dot(direction, n), 1.0f);
-    float cos_t;
-    if (u < fresnel_dielectric(cos_i, eta, &cos_t))
-        return reflect(direction, n);
+    float cos_i, cos_t;
+    const Facing facing = facing_normal(it, -direction, &cos_i);
+    const float inverse_eta = facing.outside ? 1.0f / inside_over_outside : inside_over_outside;
+    if (u < fresnel_dielectric(cos_i, inverse_eta, &cos_t))
+        return reflect(direction, facing.normal, cos_i);
     if (radiance)
-        weight->scale /= eta * eta;
-    return refract(direction, n, eta, cos_i, cos_t);
+        weight->scale *= inverse_eta * inverse_eta;
+    return refract(direction, facing.normal, inverse_eta, cos_i, cos_t);
 }
 #endif
 
@@ -52,8 +51,8 @@ float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* mate
 // Reflects at a smooth conductor; the Fresnel reflectance multiplies the weight. Returns the new direction.
 float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
                          float3 direction, PathWeight* weight) {
-    const float3 n = facing_normal(it, -direction);
-    const float cos_i = min(-dot(direction, n), 1.0f);
+    float cos_i;
+    const Facing facing = facing_normal(it, -direction, &cos_i);
     const global float* eta = spectrum_row(scene->pass_table, material->eta);
     const global float* k = spectrum_row(scene->pass_table, material->k);
     if (weight->slot >= 0) {
@@ -62,7 +61,7 @@ float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* mater
         for (int b = 0; b < BLOCKS; ++b)
             weight->spectrum.block[b] *= fresnel_conductor_lanes(cos_i, vloadv(b, eta), vloadv(b, k));
     }
-    return reflect(direction, n);
+    return reflect(direction, facing.normal, cos_i);
 }
 #endif
 

@@ -13,30 +13,33 @@
 
 #define BVH_SMALLEST_DIRECTION 1e-18f
 
-// Half a unit in the last place of 1, and how many of them times the largest coordinate a box is widened by. Slabs: 5 for
-// the reciprocal (OpenCL allows 2.5 ulp), 3 for the products and the sum; triangles: 6 for translating and shearing a
-// vertex (Woop et al. 2013, section 3). The builder (host/bvh/build_bvh.cpp) adds the same multiple of the triangles' coordinates.
+// Half a unit in the last place of 1, and how many of them times the largest coordinate a box is widened by. Slabs: 5
+// for the reciprocal (OpenCL allows 2.5 ulp), 3 for the products and the sum; triangles: 6 for translating and shearing
+// a vertex (Woop et al. 2013, section 3). The builder (host/bvh/binary_tree.cpp) adds the same multiple of the
+// triangles' coordinates.
 #define BVH_ROUNDING 5.9604645e-8f
 #define BVH_PADDING (16.0f * BVH_ROUNDING)
 
 // Where a ray hit: point = (1-u-v) v0 + u v1 + v v2. triangle = -1 if it hit nothing.
 typedef struct Hit {
-    float t;
+    float t; // t_max if it hit nothing
     int triangle;
     float u, v;
 } Hit;
 
 // What the traversal needs of a ray, computed once.
 typedef struct BvhRay {
-    float3 inverse;      // 1 / direction
-    float3 entry, exit;  // -origin / direction, moved outwards for planes where the ray enters and leaves a box
-    int3 entry_row;      // where in a BvhNode, in floats, the planes lie through which the ray enters a box
-    int3 axis;           // rows of a vertex's coordinates; z is the direction's largest component
-    float3 origin;       // in the order of axis
-    float3 shear;        // Woop et al. 2013, section 3.2
+    float3 inverse;     // 1 / direction
+    float3 entry, exit; // -origin / direction, moved outwards for planes where the ray enters and leaves a box
+    int3 entry_row;     // where in a BvhNode, in floats, the planes lie through which the ray enters a box
+    int3 axis;          // rows of a vertex's coordinates; z is the direction's largest component
+    float3 origin;      // in the order of axis
+    float3 shear;       // Woop et al. 2013, section 3.2
 } BvhRay;
 
-float bvh_component(float3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+float bvh_component(float3 v, int axis) {
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
 
 BvhRay bvh_prepare_ray(float3 origin, float3 direction) {
     BvhRay ray;
@@ -63,10 +66,14 @@ BvhRay bvh_prepare_ray(float3 origin, float3 direction) {
 }
 
 // One byte of each lane's comparison result, 0 or 1.
-ulong bvh_lane_mask(int8 condition) { return as_ulong(convert_char8(condition)) & 0x0101010101010101UL; }
+ulong bvh_lane_mask(int8 condition) {
+    return as_ulong(convert_char8(condition)) & 0x0101010101010101UL;
+}
 
 // The lowest lane of a mask that is not zero.
-int bvh_first_lane(ulong mask) { return (int)(popcount((mask - 1) & ~mask) >> 3); }
+int bvh_first_lane(ulong mask) {
+    return (int)(popcount((mask - 1) & ~mask) >> 3);
+}
 
 // The children of a node that the ray meets before t_max; *entry_t is where it enters each.
 ulong bvh_intersect_boxes(const global BvhNode* node, const BvhRay* ray, float t_max, float8* entry_t) {
@@ -74,9 +81,12 @@ ulong bvh_intersect_boxes(const global BvhNode* node, const BvhRay* ray, float t
     const float8 entry_x = fma(vload8(0, rows + ray->entry_row.x), (float8)(ray->inverse.x), (float8)(ray->entry.x));
     const float8 entry_y = fma(vload8(0, rows + ray->entry_row.y), (float8)(ray->inverse.y), (float8)(ray->entry.y));
     const float8 entry_z = fma(vload8(0, rows + ray->entry_row.z), (float8)(ray->inverse.z), (float8)(ray->entry.z));
-    const float8 exit_x = fma(vload8(0, rows + (24 - ray->entry_row.x)), (float8)(ray->inverse.x), (float8)(ray->exit.x));
-    const float8 exit_y = fma(vload8(0, rows + (40 - ray->entry_row.y)), (float8)(ray->inverse.y), (float8)(ray->exit.y));
-    const float8 exit_z = fma(vload8(0, rows + (56 - ray->entry_row.z)), (float8)(ray->inverse.z), (float8)(ray->exit.z));
+    const float8 exit_x =
+        fma(vload8(0, rows + (24 - ray->entry_row.x)), (float8)(ray->inverse.x), (float8)(ray->exit.x));
+    const float8 exit_y =
+        fma(vload8(0, rows + (40 - ray->entry_row.y)), (float8)(ray->inverse.y), (float8)(ray->exit.y));
+    const float8 exit_z =
+        fma(vload8(0, rows + (56 - ray->entry_row.z)), (float8)(ray->inverse.z), (float8)(ray->exit.z));
     *entry_t = max(max(entry_x, entry_y), max(entry_z, (float8)(0.0f)));
     const float8 exit_t = min(min(exit_x, exit_y), min(exit_z, (float8)(t_max)));
     return bvh_lane_mask(*entry_t <= exit_t);
@@ -126,7 +136,8 @@ BvhEdges bvh_intersect_triangles(const global BvhLeaf* leaf, const BvhRay* ray, 
     edges.determinant = fabs(determinant);
     edges.scaled_t = as_float8(as_int8(t) ^ sign);
     const float8 smallest = min(as_float8(as_int8(u) ^ sign), min(edges.v, edges.w));
-    edges.hits = bvh_lane_mask((smallest >= 0.0f) & (edges.scaled_t > 0.0f) & (edges.scaled_t < t_max * edges.determinant));
+    edges.hits =
+        bvh_lane_mask((smallest >= 0.0f) & (edges.scaled_t > 0.0f) & (edges.scaled_t < t_max * edges.determinant));
     return edges;
 }
 
@@ -161,67 +172,97 @@ Hit bvh_closest_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, f
     hit.u = 0.0f;
     hit.v = 0.0f;
 
-    // Entries to visit, the nearest of each node's children on top: the bits of the (non-negative) distance above the
-    // child reference, so that entries compare as integers.
+    // What is left to visit, the nearest of each node's children on top: the bits of the (non-negative) distance above
+    // the child reference, so that entries compare as integers. The nearest child of the current node never goes there.
     ulong stack[BVH_STACK_SIZE];
     int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        const ulong entry = stack[--top];
-        if (as_float((uint)(entry >> 32)) > hit.t)
-            continue;
-        const int child = (int)(uint)entry;
-        if (child < 0) {
-            bvh_closest_in_leaf(leaves + ~child, &ray, &hit);
-            continue;
-        }
+    int child = 0;
+    for (;;) {
         const global BvhNode* node = nodes + child;
         float8 entry_t;
-        ulong hits = bvh_intersect_boxes(node, &ray, hit.t, &entry_t);
+        ulong hits = 0;
+        if (child >= 0)
+            hits = bvh_intersect_boxes(node, &ray, hit.t, &entry_t);
+        else
+            bvh_closest_in_leaf(leaves + ~child, &ray, &hit);
+        if (hits == 0) {
+            ulong entry;
+            do {
+                if (top == 0)
+                    return hit;
+                entry = stack[--top];
+            } while (as_float((uint)(entry >> 32)) > hit.t);
+            child = (int)(uint)entry;
+            continue;
+        }
+        int lane = bvh_first_lane(hits);
+        child = node->child[lane];
+        hits &= hits - 1;
         if (hits == 0)
             continue;
         uint distances[8];
         vstore8(as_uint8(entry_t), 0, distances);
+        ulong nearest = ((ulong)distances[lane] << 32) | (uint)child;
         const int bottom = top;
         for (; hits != 0; hits &= hits - 1) {
-            const int lane = bvh_first_lane(hits);
-            const ulong pushed = ((ulong)distances[lane] << 32) | (uint)node->child[lane];
+            lane = bvh_first_lane(hits);
+            const ulong other = ((ulong)distances[lane] << 32) | (uint)node->child[lane];
+            const ulong pushed = max(nearest, other);
+            nearest = min(nearest, other);
             int place = top++;
             for (; place > bottom && stack[place - 1] < pushed; --place)
                 stack[place] = stack[place - 1];
             stack[place] = pushed;
         }
+        child = (int)(uint)nearest;
     }
-    return hit;
 }
 
-// Whether anything is hit at 0 < t < t_max.
+// Whether anything is hit at 0 < t < t_max. The nearest child of a node is visited first, the others in any order.
 bool bvh_any_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, float3 origin, float3 direction,
                  float t_max) {
     const BvhRay ray = bvh_prepare_ray(origin, direction);
     int stack[BVH_STACK_SIZE];
     int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        const int child = stack[--top];
-        if (child < 0) {
-            if (bvh_intersect_triangles(leaves + ~child, &ray, t_max).hits != 0)
-                return true;
-            continue;
-        }
+    int child = 0;
+    for (;;) {
         const global BvhNode* node = nodes + child;
         float8 entry_t;
-        for (ulong hits = bvh_intersect_boxes(node, &ray, t_max, &entry_t); hits != 0; hits &= hits - 1)
-            stack[top++] = node->child[bvh_first_lane(hits)];
+        ulong hits = 0;
+        if (child >= 0)
+            hits = bvh_intersect_boxes(node, &ray, t_max, &entry_t);
+        else if (bvh_intersect_triangles(leaves + ~child, &ray, t_max).hits != 0)
+            return true;
+        if (hits == 0) {
+            if (top == 0)
+                return false;
+            child = stack[--top];
+            continue;
+        }
+        int lane = bvh_first_lane(hits);
+        child = node->child[lane];
+        hits &= hits - 1;
+        if (hits == 0)
+            continue;
+        float distances[8];
+        vstore8(entry_t, 0, distances);
+        float nearest = distances[lane];
+        for (; hits != 0; hits &= hits - 1) {
+            lane = bvh_first_lane(hits);
+            const int other = node->child[lane];
+            const bool nearer = distances[lane] < nearest;
+            stack[top++] = nearer ? child : other;
+            child = nearer ? other : child;
+            nearest = nearer ? distances[lane] : nearest;
+        }
     }
-    return false;
 }
 
-// The point p of a surface moved off it, to the side that the geometric normal (unit) points to, so that a ray from there
-// does not meet the surface again: by 256 units in the last place of each coordinate, or, near zero, by a fixed distance
-// (Wächter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection"). p should be interpolated from the
-// triangle's vertices with the hit's u and v, not computed from origin and t. Enough where the triangle is not much larger
-// than its distance from the scene's origin; offset_from_triangle holds for all.
+// The point p of a surface moved off it, to the side that the geometric normal (unit) points to, so that a ray from
+// there does not meet the surface again: by 256 units in the last place of each coordinate, or, near zero, by a fixed
+// distance (Wächter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection"). p should be interpolated
+// from the triangle's vertices with the hit's u and v, not computed from origin and t. Enough where the triangle is not
+// much larger than its distance from the scene's origin; offset_from_triangle holds for all.
 float3 offset_ray_origin(float3 p, float3 geometric_normal) {
     const float near_zero = 1.0f / 32.0f;
     const float fixed_step = 1.0f / 65536.0f;

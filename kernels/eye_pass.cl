@@ -4,42 +4,25 @@
 #include "bsdf.h"
 #include "lights.h"
 
-// Dimensions of the low-discrepancy sequence over the passes of a pixel.
-#define EYE_FILM 0u
-#define EYE_LIGHT 2u
-#define EYE_LIGHT_POINT 3u
-#define EYE_LENS 5u
-#define EYE_FIRST_SCATTER 7u
+// Dimensions of a pixel's low-discrepancy sequence over the passes.
+#define EYE_FILM s01
+#define EYE_LIGHT s2
+#define EYE_LIGHT_POINT s34
+#define EYE_LENS s56
+#define EYE_FIRST_SCATTER s7
 
-// The samples of a pixel: Sobol' over the passes, scrambled by pixel.
-typedef struct EyeSampler {
-    const global uint* table;
-    uint index;
-    uint4 scramble[2];
-} EyeSampler;
-
-float eye_sample(const EyeSampler* sampler, uint dimension) {
-    const uint* scramble = (const uint*)sampler->scramble;
-    return sobol(sampler->table, sampler->index, dimension, scramble[dimension]);
-}
-
-float2 eye_sample2(const EyeSampler* sampler, uint dimension) {
-    return (float2)(eye_sample(sampler, dimension), eye_sample(sampler, dimension + 1u));
-}
-
-void camera_ray(const global SceneConstants* c, float2 raster, const EyeSampler* sampler, float3* origin,
-                float3* direction) {
+void camera_ray(const global SceneConstants* c, float2 raster, float2 u_lens, float3* origin, float3* direction) {
     *origin = (float3)(c->camera_x, c->camera_y, c->camera_z);
     *direction = (float3)(c->corner_x, c->corner_y, c->corner_z) + raster.x * (float3)(c->right_x, c->right_y, c->right_z) +
                  raster.y * (float3)(c->down_x, c->down_y, c->down_z);
 #if HAS_THIN_LENS
     const float3 focus = *origin + c->focal_distance * *direction;
-    const float2 lens = c->lens_radius * sample_disc(eye_sample2(sampler, EYE_LENS));
+    const float2 lens = c->lens_radius * sample_disc(u_lens);
     *origin += lens.x * (float3)(c->lens_right_x, c->lens_right_y, c->lens_right_z) +
                lens.y * (float3)(c->lens_up_x, c->lens_up_y, c->lens_up_z);
     *direction = focus - *origin;
 #endif
-    *direction = normalize(*direction);
+    *direction = unit_vector(*direction);
 }
 
 // XYZ of throughput · spectrum[first] · spectrum[second], the second one left out if negative.
@@ -63,9 +46,9 @@ float3 weighted_xyz(const Scene* scene, const PathWeight* weight, int first, int
 }
 
 float3 direct_light(const Scene* scene, const Interaction* it, float3 n, int reflectance, const PathWeight* weight,
-                    const EyeSampler* sampler) {
-    const DirectLight light =
-        sample_direct(scene, it, n, eye_sample(sampler, EYE_LIGHT), eye_sample2(sampler, EYE_LIGHT_POINT));
+                    float u_light, float2 u_point) {
+    const int chosen = scene->constants->light_count == 1 ? 0 : choose_light(scene, u_light);
+    const DirectLight light = sample_direct(scene->lights + chosen, it, n, u_point);
     // Negated, so that a NaN goes on to the film, which counts it.
     if (light.irradiance <= 0.0f || is_occluded(scene, light.origin, light.direction, light.t_max))
         return 0.0f;
@@ -81,16 +64,14 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
     const uint y = (uint)constants->region_y + pixel / (uint)constants->region_width;
     const uint image_pixel = y * (uint)constants->image_width + x;
 
-    EyeSampler sampler;
-    sampler.table = sobol_table;
-    sampler.index = pass;
-    sampler.scramble[0] = pcg4d((uint4)(image_pixel, STREAM_EYE, 0u, seed));
-    sampler.scramble[1] = pcg4d((uint4)(image_pixel, STREAM_EYE, 1u, seed));
+    const uint8 scramble = (uint8)(pcg4d((uint4)(image_pixel, STREAM_EYE, 0u, seed)),
+                                   pcg4d((uint4)(image_pixel, STREAM_EYE, 1u, seed)));
+    const float8 u = sobol8(sobol_table, pass, scramble);
     // Over W passes a pixel visits every slot once; neighbours begin at different ones.
-    const int slot = (int)((pcg4d((uint4)(image_pixel, STREAM_EYE, 2u, seed)).x + pass) % (uint)W);
+    const int slot = (int)(((scramble.s0 >> 8) + pass) % (uint)W);
 
     float3 origin, direction;
-    camera_ray(constants, (float2)((float)x, (float)y) + eye_sample2(&sampler, EYE_FILM), &sampler, &origin, &direction);
+    camera_ray(constants, (float2)((float)x, (float)y) + u.EYE_FILM, u.EYE_LENS, &origin, &direction);
 
     PathWeight weight;
     weight.scale = 1.0f;
@@ -121,9 +102,11 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
 #endif
         const global SurfaceMaterial* material = materials + it.material;
         if (material->kind == MATERIAL_DIFFUSE) {
-            const float3 n = facing_normal(&it, -direction);
+            float cosine;
+            const float3 n = facing_normal(&it, -direction, &cosine).normal;
 #if !DIRECT_PHOTONS
-            radiance += direct_light(&scene, &it, n, material->reflectance, &weight, &sampler);
+            radiance += direct_light(&scene, &it, n, material->reflectance, &weight, u.EYE_LIGHT,
+                                     u.EYE_LIGHT_POINT);
 #endif
             point.x = it.point.x;
             point.y = it.point.y;
@@ -134,9 +117,9 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
         }
 #if HAS_DIELECTRIC
         if (material->kind == MATERIAL_DIELECTRIC) {
-            const float u = depth == 0 ? eye_sample(&sampler, EYE_FIRST_SCATTER)
+            const float v = depth == 0 ? u.EYE_FIRST_SCATTER
                                        : random4(seed, pass, image_pixel, STREAM_EYE + (uint)depth).x;
-            direction = scatter_dielectric(&scene, material, &it, direction, u, slot, true, &weight);
+            direction = scatter_dielectric(&scene, material, &it, direction, v, slot, true, &weight);
         }
 #endif
 #if HAS_CONDUCTOR

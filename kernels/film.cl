@@ -4,14 +4,16 @@
 #include "shared_types.h"
 #include "sampling.h"
 
-// Adds to high + low without loss: Knuth's TwoSum (Knuth 1997, TAOCP vol. 2, section 4.2.2, theorem B).
+// Adds to high + low without loss: Knuth's TwoSum (Knuth 1997, TAOCP vol. 2, section 4.2.2, theorem B), then Dekker's of the two
+// parts (theorem C), which keeps the low part below half a unit of the high one; it would grow as a plain sum otherwise.
 void add_compensated(global float* high, global float* low, float value) {
 #pragma OPENCL FP_CONTRACT OFF
     const float sum = *high + value;
     const float virtual_value = sum - *high;
     const float lost = (*high - (sum - virtual_value)) + (value - virtual_value);
-    *high = sum;
-    *low += lost;
+    const float tail = *low + lost;
+    *high = sum + tail;
+    *low = tail - (*high - sum);
 }
 
 // One work-item per pixel, before the first pass.
@@ -28,7 +30,7 @@ kernel void film_clear(const global float* radius0, global FilmPixel* film) {
     f->shadow_rays = 0;
 }
 
-// One work-item per pixel: the bits of the largest radius of a visible point in the pass. Positive floats are ordered as their
+// One work-item per pixel, for --radius statistics: the bits of the largest radius of a visible point in the pass. Positive floats are ordered as their
 // bits are. largest_radius[0] starts from 0.
 kernel void film_largest_radius(const global VisiblePoint* visible_points, global uint* largest_radius) {
     const global VisiblePoint* point = visible_points + get_global_id(0);

@@ -23,9 +23,17 @@ typedef struct Search {
     const global SceneConstants* constants;
     const global float* eye_spectrum;
     float3 point, normal;
+    uint packed_normal;
+    bool rows_share_buckets;
     float radius2, scale;
     int slot;
 } Search;
+
+bool normals_agree(uint packed, float3 normal) {
+    const float3 direction = unpack_direction(packed);
+    const float cosine = dot(direction, normal); // times the length of direction
+    return cosine > 0.0f && cosine * cosine >= SMALLEST_NORMAL_COSINE * SMALLEST_NORMAL_COSINE * dot(direction, direction);
+}
 
 void add_photon(const Search* search, uint index, Gathered* gathered) {
     const global Photon* photon = search->photons + index;
@@ -55,9 +63,15 @@ void add_photon(const Search* search, uint index, Gathered* gathered) {
 #endif
 }
 
-// The photons between two positions of the sorted pairs that lie in the row of cells (y, z). Other rows may share its
-// buckets: their photons are met again there, so here they do not count.
-void add_range(const Search* search, uint begin, uint end, int y, int z, Gathered* gathered) {
+// A row of cells that a search covers.
+typedef struct Row {
+    int y, z;
+    uint bucket;
+} Row;
+
+// The photons between two positions of the sorted pairs. If the search's rows share buckets, only those that lie in this
+// one: the others are met again in their own. Inlined, the gather takes a tenth less time on PoCL.
+__attribute__((always_inline)) void add_range(const Search* search, uint begin, uint end, const Row* row, Gathered* gathered) {
     for (uint i = begin; i < end; ++i) {
         const uint index = search->pairs[i].y;
         const global Photon* photon = search->photons + index;
@@ -65,13 +79,26 @@ void add_range(const Search* search, uint begin, uint end, int y, int z, Gathere
         const float3 offset = position - search->point;
         if (dot(offset, offset) > search->radius2)
             continue;
-        const int3 cell = cell_of(position, search->constants, search->scale);
-        if (cell.y != y || cell.z != z)
-            continue;
-        if (dot(unpack_normal(photon->normal), search->normal) < SMALLEST_NORMAL_COSINE)
-            continue;
-        add_photon(search, index, gathered);
+        if (search->rows_share_buckets) {
+            const int3 cell = cell_of(position, search->constants, search->scale);
+            if (cell.y != row->y || cell.z != row->z)
+                continue;
+        }
+        if (photon->normal == search->packed_normal || normals_agree(photon->normal, search->normal))
+            add_photon(search, index, gathered);
     }
+}
+
+// Whether two of the rows, each `span` + 1 cells long, have buckets in common.
+bool share_buckets(const Row* rows, int count, uint span) {
+    for (int i = 1; i < count; ++i) {
+        for (int j = 0; j < i; ++j) {
+            // Distance on the ring of buckets, at most span for an overlap.
+            if (((rows[i].bucket - rows[j].bucket + span) & BUCKET_MASK) <= 2u * span)
+                return true;
+        }
+    }
+    return false;
 }
 
 // One work-item per pixel. gathered_flux[pixel] becomes the XYZ of Σ flux / photon paths, throughput included, and the number
@@ -94,6 +121,7 @@ kernel void gather(const global SceneConstants* constants, const global float* p
     search.eye_spectrum = eye_spectra + (size_t)pixel * W_PADDED;
     search.point = (float3)(point.x, point.y, point.z);
     search.normal = unpack_normal(point.normal);
+    search.packed_normal = point.normal;
     search.radius2 = point.radius * point.radius;
     search.scale = cell_scale(largest_radius);
     search.slot = point.slot;
@@ -108,17 +136,23 @@ kernel void gather(const global SceneConstants* constants, const global float* p
 #endif
     const int3 low = cell_of(search.point - point.radius, constants, search.scale);
     const int3 high = cell_of(search.point + point.radius, constants, search.scale);
+    Row rows[4];  // cells are larger than the sphere: at most two in y and z each
+    int count = 0;
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {
-            const uint row = row_bucket(y, z);
-            const uint first = (row + (uint)low.x) & BUCKET_MASK;
-            const uint last = (row + (uint)high.x) & BUCKET_MASK;
-            if (first <= last) {
-                add_range(&search, bucket_begin[first], bucket_begin[last + 1], y, z, &gathered);
-            } else {
-                add_range(&search, bucket_begin[first], bucket_begin[BUCKET_COUNT], y, z, &gathered);
-                add_range(&search, 0, bucket_begin[last + 1], y, z, &gathered);
-            }
+            const Row row = {y, z, row_bucket(y, z)};
+            rows[count++] = row;
+        }
+    }
+    search.rows_share_buckets = share_buckets(rows, count, (uint)(high.x - low.x));
+    for (int i = 0; i < count; ++i) {
+        const uint first = (rows[i].bucket + (uint)low.x) & BUCKET_MASK;
+        const uint last = (rows[i].bucket + (uint)high.x) & BUCKET_MASK;
+        if (first <= last) {
+            add_range(&search, bucket_begin[first], bucket_begin[last + 1], &rows[i], &gathered);
+        } else {
+            add_range(&search, bucket_begin[first], bucket_begin[BUCKET_COUNT], &rows[i], &gathered);
+            add_range(&search, 0, bucket_begin[last + 1], &rows[i], &gathered);
         }
     }
     float3 flux = gathered.flux;

@@ -1,5 +1,5 @@
-// The hash grid that photons are sorted into. Cells are cubes of edge 2 r_max, so that the sphere around a visible point
-// touches at most two in each direction. A run of cells along x falls into consecutive buckets, which one range of
+// The hash grid that photons are sorted into. Cells are cubes a little larger than 2 r_max, so that the sphere around a visible
+// point touches at most two in each direction, rounding included. A run of cells along x falls into consecutive buckets, which one range of
 // the sorted photons covers.
 #ifndef TRISTIM_GRID_H
 #define TRISTIM_GRID_H
@@ -14,7 +14,7 @@
 // 1 / edge of a cell. largest_radius holds the bits of the largest search radius of the pass's visible points, 0 if it has
 // none (then nothing is looked up, and any scale will do).
 float cell_scale(const global uint* largest_radius) {
-    return largest_radius[0] != 0u ? 0.5f / as_float(largest_radius[0]) : 1.0f;
+    return largest_radius[0] != 0u ? 0.4999f / as_float(largest_radius[0]) : 1.0f;
 }
 
 int3 cell_of(float3 point, const global SceneConstants* c, float scale) {

@@ -91,7 +91,7 @@ Emission sample_emission(const Scene* scene, const global SceneLight* light, flo
         }
         const Frame frame = make_frame(n);
         e.direction = frame_to_world(&frame, sample_cosine_hemisphere(u_direction));
-        e.origin = offset_ray_origin(area_light_point(light, u_position), n);
+        e.origin = offset_from_triangle(area_light_point(light, u_position), n, light->extent);
         break;
     }
 #endif
@@ -108,35 +108,22 @@ typedef struct DirectLight {
     int spectrum;
 } DirectLight;
 
-// Samples one light; n is the shading normal on the side to light.
-DirectLight sample_direct(const Scene* scene, const Interaction* it, float3 n, float u_light, float2 u) {
-    const global SceneLight* light = scene->lights + choose_light(scene, u_light);
+// Samples light from one source, chosen by choose_light; n is the shading normal on the side to light.
+DirectLight sample_direct(const global SceneLight* light, const Interaction* it, float3 n, float2 u) {
     DirectLight d;
     d.spectrum = light->spectrum;
     d.irradiance = light->scale / light->probability;
-    d.t_max = 1.0f;
-    float3 target = light_position(light);
-    switch (light->kind) {
-#if HAS_POINT_LIGHT
-    case LIGHT_POINT:
-        break;
-#endif
-#if HAS_SPOT_LIGHT
-    case LIGHT_SPOT:
-        d.irradiance *= spot_falloff(dot(normalize(it->point - target), light_direction(light)), light->cos_total_width,
-                                     light->cos_falloff_start);
-        break;
-#endif
 #if HAS_DISTANT_LIGHT
-    case LIGHT_DISTANT:
+    if (light->kind == LIGHT_DISTANT) {
         d.direction = -light_direction(light);
         d.origin = leave_surface(it, d.direction);
         d.t_max = INFINITE_DISTANCE;
         d.irradiance *= max(dot(d.direction, n), 0.0f);
         return d;
+    }
 #endif
 #if HAS_INFINITE_LIGHT
-    case LIGHT_INFINITE: {
+    if (light->kind == LIGHT_INFINITE) {
         const Frame frame = make_frame(n);
         d.direction = frame_to_world(&frame, sample_cosine_hemisphere(u));
         d.origin = leave_surface(it, d.direction);
@@ -145,24 +132,29 @@ DirectLight sample_direct(const Scene* scene, const Interaction* it, float3 n, f
         return d;
     }
 #endif
+    float3 target = light_position(light);
 #if HAS_AREA_LIGHT
-    case LIGHT_AREA: {
+    if (light->kind == LIGHT_AREA)
         target = area_light_point(light, u);
-        const float3 towards_point = normalize(it->point - target);
-        float cos_light = dot(towards_point, light_direction(light));
-        cos_light = light->two_sided ? fabs(cos_light) : cos_light;
-        d.irradiance *= max(cos_light, 0.0f) * light->area;
-        target = offset_ray_origin(target, dot(towards_point, light_direction(light)) >= 0.0f ? light_direction(light)
-                                                                                            : -light_direction(light));
-        break;
+#endif
+    const float3 towards = target - it->point;
+    const float inverse_distance = 1.0f / sqrt(dot(towards, towards));
+    const float cos_light = -dot(towards, light_direction(light)) * inverse_distance;
+    d.irradiance *= max(dot(towards, n), 0.0f) * inverse_distance * inverse_distance * inverse_distance;
+#if HAS_SPOT_LIGHT
+    if (light->kind == LIGHT_SPOT)
+        d.irradiance *= spot_falloff(cos_light, light->cos_total_width, light->cos_falloff_start);
+#endif
+#if HAS_AREA_LIGHT
+    if (light->kind == LIGHT_AREA) {
+        d.irradiance *= light->area * (light->two_sided ? fabs(cos_light) : max(cos_light, 0.0f));
+        target = offset_from_triangle(target, cos_light >= 0.0f ? light_direction(light) : -light_direction(light),
+                                      light->extent);
     }
 #endif
-    }
-    const float3 towards = target - it->point;
-    const float squared = dot(towards, towards);
-    d.irradiance *= max(dot(towards, n), 0.0f) * rsqrt(squared) / squared;
     d.origin = leave_surface(it, towards);
     d.direction = target - d.origin;
+    d.t_max = 1.0f;
     return d;
 }
 

@@ -5,19 +5,21 @@
 #include "spectrum.h"
 
 // Fresnel reflectance of a dielectric for unpolarised light (Born & Wolf 1999, section 1.5.2). cos_i >= 0 is the cosine on
-// the incident side, eta the index of the other side over this one. *cos_t becomes the cosine beyond, 0 at total
+// the incident side, inverse_eta the index of this side over that of the other. *cos_t becomes the cosine beyond, 0 at total
 // reflection. sin²θ_i is formed as (1-c)(1+c), which keeps its digits at normal incidence.
-float fresnel_dielectric(float cos_i, float eta, float* cos_t) {
+float fresnel_dielectric(float cos_i, float inverse_eta, float* cos_t) {
     const float sin2_i = (1.0f - cos_i) * (1.0f + cos_i);
-    const float cos2_t = 1.0f - sin2_i / (eta * eta);
+    const float cos2_t = 1.0f - sin2_i * inverse_eta * inverse_eta;
     if (cos2_t <= 0.0f) {
         *cos_t = 0.0f;
         return 1.0f;
     }
     *cos_t = sqrt(cos2_t);
-    const float s = (cos_i - eta * *cos_t) / (cos_i + eta * *cos_t);
-    const float p = (eta * cos_i - *cos_t) / (eta * cos_i + *cos_t);
-    return 0.5f * (s * s + p * p);
+    // s = a/b and p = c/d: (s² + p²)/2 by one division.
+    const float a = inverse_eta * cos_i - *cos_t, b = inverse_eta * cos_i + *cos_t;
+    const float c = cos_i - inverse_eta * *cos_t, d = cos_i + inverse_eta * *cos_t;
+    const float ad = a * d, cb = c * b, bd = b * d;
+    return 0.5f * (ad * ad + cb * cb) / (bd * bd);
 }
 
 // Fresnel reflectance of a conductor with index eta + ik for unpolarised light arriving from vacuum (Born & Wolf 1999,
@@ -39,12 +41,13 @@ float fresnel_dielectric(float cos_i, float eta, float* cos_t) {
 DEFINE_FRESNEL_CONDUCTOR(fresnel_conductor, float)
 DEFINE_FRESNEL_CONDUCTOR(fresnel_conductor_lanes, floatv)
 
-// direction towards the surface, n on the side it comes from.
-float3 reflect(float3 direction, float3 n) { return direction - 2.0f * dot(direction, n) * n; }
+// direction towards the surface, n on the side it comes from, at cosine cos_i to it.
+float3 reflect(float3 direction, float3 n, float cos_i) { return direction + 2.0f * cos_i * n; }
 
-// Snell's law in vector form; cos_i and cos_t as in fresnel_dielectric, without total reflection.
-float3 refract(float3 direction, float3 n, float eta, float cos_i, float cos_t) {
-    return normalize(direction / eta + (cos_i / eta - cos_t) * n);
+// Snell's law in vector form; arguments as in fresnel_dielectric, without total reflection. The result's length is that of
+// direction, 1, within rounding: cos_t was computed from the same sine.
+float3 refract(float3 direction, float3 n, float inverse_eta, float cos_i, float cos_t) {
+    return inverse_eta * direction + (inverse_eta * cos_i - cos_t) * n;
 }
 
 #endif

@@ -5,11 +5,11 @@
 #include "lights.h"
 
 // Dimensions of the low-discrepancy sequence over all photons of the render.
-#define PHOTON_DIRECTION 0u
-#define PHOTON_SLOT 2u
-#define PHOTON_LIGHT 3u
-#define PHOTON_POSITION 4u
-#define PHOTON_FIRST_BOUNCE 6u
+#define PHOTON_DIRECTION s01
+#define PHOTON_SLOT s2
+#define PHOTON_LIGHT s3
+#define PHOTON_POSITION s45
+#define PHOTON_FIRST_BOUNCE s67
 
 // Where a work-item puts its photons.
 typedef struct PhotonStore {
@@ -58,23 +58,13 @@ bool reflect_diffusely(const Scene* scene, int reflectance, float u, PathWeight*
     return u < survival;
 }
 
-void trace_photon(const Scene* scene, uint seed, uint pass, uint path, uint paths_per_pass, PhotonStore* store) {
-    // The sequence runs on over the passes; where its 32-bit index begins anew, the scrambling changes.
-    const ulong number = (ulong)pass * paths_per_pass + path;
-    const uint index = (uint)number;
-    const uint epoch = (uint)(number >> 32);
-    const uint4 s0 = pcg4d((uint4)(epoch, STREAM_PHOTON, 0u, seed));
-    const uint4 s1 = pcg4d((uint4)(epoch, STREAM_PHOTON, 1u, seed));
-    const global uint* table = scene->sobol_table;
+// u is the path's point of the low-discrepancy sequence.
+void trace_photon(const Scene* scene, uint seed, uint pass, uint path, float8 u, PhotonStore* store) {
+    const int chosen = scene->constants->light_count == 1 ? 0 : choose_light(scene, u.PHOTON_LIGHT);
+    const global SceneLight* light = scene->lights + chosen;
+    const int slot = min((int)(u.PHOTON_SLOT * (float)W), W - 1);
 
-    const global SceneLight* light = scene->lights + choose_light(scene, sobol(table, index, PHOTON_LIGHT, s0.w));
-    const float2 u_direction = (float2)(sobol(table, index, PHOTON_DIRECTION, s0.x),
-                                        sobol(table, index, PHOTON_DIRECTION + 1u, s0.y));
-    const float2 u_position = (float2)(sobol(table, index, PHOTON_POSITION, s1.x),
-                                       sobol(table, index, PHOTON_POSITION + 1u, s1.y));
-    const int slot = min((int)(sobol(table, index, PHOTON_SLOT, s0.z) * (float)W), W - 1);
-
-    const Emission emission = sample_emission(scene, light, u_direction, u_position);
+    const Emission emission = sample_emission(scene, light, u.PHOTON_DIRECTION, u.PHOTON_POSITION);
     float3 origin = emission.origin;
     float3 direction = emission.direction;
     PathWeight weight;
@@ -90,23 +80,22 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path, uint path
             return;
         const Interaction it = make_interaction(scene, &hit);
         const global SurfaceMaterial* material = scene->materials + it.material;
-        const float4 u = random4(seed, pass, path, STREAM_PHOTON + (uint)depth);
+        const float4 v = random4(seed, pass, path, STREAM_PHOTON + (uint)depth);
         if (material->kind == MATERIAL_DIFFUSE) {
-            const float3 n = facing_normal(&it, -direction);
+            float cosine;
+            const float3 n = facing_normal(&it, -direction, &cosine).normal;
             if (depth > 0 || DIRECT_PHOTONS)
                 store_photon(scene, store, &it, n, material->reflectance, &weight);
-            if (!reflect_diffusely(scene, material->reflectance, u.x, &weight))
+            if (!reflect_diffusely(scene, material->reflectance, v.x, &weight))
                 return;
-            const float2 u_bounce = bounced ? u.yz
-                                            : (float2)(sobol(table, index, PHOTON_FIRST_BOUNCE, s1.z),
-                                                       sobol(table, index, PHOTON_FIRST_BOUNCE + 1u, s1.w));
+            const float2 u_bounce = bounced ? v.yz : u.PHOTON_FIRST_BOUNCE;
             bounced = true;
             const Frame frame = make_frame(n);
             direction = frame_to_world(&frame, sample_cosine_hemisphere(u_bounce));
         }
 #if HAS_DIELECTRIC
         if (material->kind == MATERIAL_DIELECTRIC)
-            direction = scatter_dielectric(scene, material, &it, direction, u.x, slot, false, &weight);
+            direction = scatter_dielectric(scene, material, &it, direction, v.x, slot, false, &weight);
 #endif
 #if HAS_CONDUCTOR
         if (material->kind == MATERIAL_CONDUCTOR)
@@ -125,8 +114,17 @@ kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_p
     PhotonStore store = {photons, photon_spectra, item * capacity, (item + 1u) * capacity};
     const uint first = item * PATHS_PER_ITEM;
     const uint last = min(first + PATHS_PER_ITEM, paths_per_pass);
-    for (uint path = first; path < last; ++path)
-        trace_photon(&scene, seed, pass, path, paths_per_pass, &store);
+    uint8 scramble;
+    uint epoch = UINT_MAX;
+    for (uint path = first; path < last; ++path) {
+        // The sequence runs on over the passes; where its 32-bit index begins anew, the scrambling changes.
+        const ulong number = (ulong)pass * paths_per_pass + path;
+        if (epoch != (uint)(number >> 32)) {
+            epoch = (uint)(number >> 32);
+            scramble = (uint8)(pcg4d((uint4)(epoch, STREAM_PHOTON, 0u, seed)), pcg4d((uint4)(epoch, STREAM_PHOTON, 1u, seed)));
+        }
+        trace_photon(&scene, seed, pass, path, sobol8(sobol_table, (uint)number, scramble), &store);
+    }
     item_counts[item] = store.next - item * capacity;
     item_rays[item] += ray_counts.closest;
 }

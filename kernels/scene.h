@@ -73,6 +73,7 @@ typedef struct Interaction {
     float3 point;
     float3 normal;          // unit geometric normal as the triangle stores it: out of solids, along area lights' emission
     float3 shading_normal;  // unit, on the same side
+    float extent;           // of its triangle
     int material;
     int light;
 } Interaction;
@@ -84,6 +85,7 @@ Interaction make_interaction(const Scene* scene, const Hit* hit) {
                hit->u * (float3)(triangle->edge1_x, triangle->edge1_y, triangle->edge1_z) +
                hit->v * (float3)(triangle->edge2_x, triangle->edge2_y, triangle->edge2_z);
     it.normal = (float3)(triangle->normal_x, triangle->normal_y, triangle->normal_z);
+    it.extent = triangle->extent;
     it.material = triangle->material;
     it.light = triangle->light;
     it.shading_normal = it.normal;
@@ -101,16 +103,33 @@ Interaction make_interaction(const Scene* scene, const Hit* hit) {
 
 // Where a ray leaves a surface in a direction.
 float3 leave_surface(const Interaction* it, float3 direction) {
-    return offset_ray_origin(it->point, dot(direction, it->normal) >= 0.0f ? it->normal : -it->normal);
+    return offset_from_triangle(it->point, dot(direction, it->normal) >= 0.0f ? it->normal : -it->normal, it->extent);
 }
 
-// The normal to shade with, on the side that `towards` points to. A shading normal that would put `towards` on the other
-// side than the surface really has gives way to the geometric one.
-float3 facing_normal(const Interaction* it, float3 towards) {
+// The normal to shade with, on one side of a surface, and whether that is the outside.
+typedef struct Facing {
+    float3 normal;
+    bool outside;
+} Facing;
+
+// The side that the unit vector `towards` points to; *cosine becomes that between the two, in [0, 1]. A shading normal that
+// would put `towards` on the other side than the surface really has gives way to the geometric one.
+Facing facing_normal(const Interaction* it, float3 towards, float* cosine) {
     const float geometric = dot(towards, it->normal);
+    float3 n = it->normal;
+    float c = geometric;
+#if HAS_SHADING_NORMALS
     const float shading = dot(towards, it->shading_normal);
-    const float3 n = geometric * shading > 0.0f ? it->shading_normal : it->normal;
-    return geometric >= 0.0f ? n : -n;
+    if (geometric * shading > 0.0f) {
+        n = it->shading_normal;
+        c = shading;
+    }
+#endif
+    Facing facing;
+    facing.outside = geometric >= 0.0f;
+    facing.normal = facing.outside ? n : -n;
+    *cosine = min(fabs(c), 1.0f);
+    return facing;
 }
 
 #endif

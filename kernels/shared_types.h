@@ -77,7 +77,7 @@ typedef struct Triangle {
     float edge2_x, edge2_y, edge2_z;
     int normals;  // index of its first vertex normal (three floats each, three in a row), or -1
     float normal_x, normal_y, normal_z;  // unit geometric normal
-    int unused;
+    float extent;  // largest |coordinate| of its vertices, see offset_from_triangle
 } Triangle;
 
 #define MATERIAL_DIFFUSE 0
@@ -114,7 +114,8 @@ typedef struct SceneLight {
     float area;
     float edge2_x, edge2_y, edge2_z;
     int two_sided;
-    int unused[4];
+    float extent;  // of an area light's triangle
+    int unused[3];
 } SceneLight;
 
 // Values of slot in visible points and photons that are not the number of a single wavelength.

@@ -70,8 +70,8 @@ struct Square {
     }
 };
 
-/// Rays leave the square from where others hit it within `reach` of the origin: those that go away from it must miss it,
-/// grazing ones too, and those that go through it must hit it.
+/// Rays leave the square from where others hit it within `reach` of the origin: those that go away from it must miss
+/// it, grazing ones too, and those that go through it must hit it.
 void expect_no_self_intersection(const Device& device, float half, float reach) {
     SCOPED_TRACE(fmt::format("square of half-width {}, hits within {}", half, reach));
     Random random(11);

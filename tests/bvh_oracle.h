@@ -1,6 +1,7 @@
 #pragma once
 
-// Ray-triangle intersection in double precision by brute force, with bounds on what float arithmetic may answer instead.
+// Ray-triangle intersection in double precision by brute force, with bounds on what float arithmetic may answer
+// instead.
 
 #include "bvh/bvh.h"
 
@@ -28,8 +29,7 @@ inline void add(TriangleSoup& soup, const V3f& a, const V3f& b, const V3f& c) {
     soup.v2.push_back(c);
 }
 
-inline Ray make_ray(const V3f& origin, const V3f& direction,
-                    float t_max = std::numeric_limits<float>::infinity()) {
+inline Ray make_ray(const V3f& origin, const V3f& direction, float t_max = std::numeric_limits<float>::infinity()) {
     return {origin.x, origin.y, origin.z, t_max, direction.x, direction.y, direction.z, 0.0f};
 }
 
@@ -66,7 +66,8 @@ struct Standing {
 /// - translating and shearing moves a vertex by at most 6u·2M across the ray; an edge function that is off by its
 ///   products' rounding, 3uL², moves the edge by at most 3uL²/edge ≤ 6uM·(L/M)(L/edge), and where that matters the ray
 ///   passes between the edge's ends, so L ≤ edge for both: 3uL. Together less than 12uM + 3uL.
-/// - t is off by the moved vertices times the triangle's slope L²/|det|, by the edge functions' rounding, 3·3uL²·Z/|det|
+/// - t is off by the moved vertices times the triangle's slope L²/|det|, by the edge functions' rounding,
+/// 3·3uL²·Z/|det|
 ///   where Z bounds the vertices' spread along the ray, and by a few roundings of sums over M and of t itself.
 inline Standing stand(const TriangleSoup& soup, std::size_t triangle, const Ray& ray) {
     const V3d origin(ray.origin_x, ray.origin_y, ray.origin_z);
@@ -117,8 +118,10 @@ inline Standing stand(const TriangleSoup& soup, std::size_t triangle, const Ray&
     standing.certain = *low > across || *high < -across;
     const double t_max = ray.t_max;
     if (size > 0.0) {
-        standing.possible = standing.possible && standing.t + standing.t_error > 0.0 && standing.t - standing.t_error < t_max;
-        standing.certain = standing.certain && standing.t - standing.t_error > 0.0 && standing.t + standing.t_error < t_max;
+        standing.possible =
+            standing.possible && standing.t + standing.t_error > 0.0 && standing.t - standing.t_error < t_max;
+        standing.certain =
+            standing.certain && standing.t - standing.t_error > 0.0 && standing.t + standing.t_error < t_max;
     }
     return standing;
 }

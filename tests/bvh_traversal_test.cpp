@@ -8,12 +8,12 @@ namespace {
 
 using namespace bvh_test;
 
-const Device& device() {
-    static const Device opened = open_device("");
-    return opened;
+Device device() {
+    return open_device("");
 }
 
-/// Traces the rays on the device and compares each with the double-precision oracle; any-hit must agree with closest-hit.
+/// Traces the rays on the device and compares each with the double-precision oracle; any-hit must agree with
+/// closest-hit.
 void expect_right_hits(const TriangleSoup& soup, const std::vector<Ray>& rays) {
     RayTracer tracer(device(), build_bvh(soup));
     const std::vector<RayHit> hits = tracer.trace_closest(rays);
@@ -69,10 +69,11 @@ TEST(BvhTraversal, BarycentricsGiveThePointOnTheRay) {
         const double v = hits[i].v;
         const V3d on_triangle =
             (1.0 - u - v) * vertex(soup, triangle, 0) + u * vertex(soup, triangle, 1) + v * vertex(soup, triangle, 2);
-        const V3d on_ray = V3d(rays[i].origin_x, rays[i].origin_y, rays[i].origin_z) +
-                           static_cast<double>(hits[i].t) *
-                               V3d(rays[i].direction_x, rays[i].direction_y, rays[i].direction_z);
-        // The same quotients weigh the vertices in t and here: they differ by the oracle's bound, seen along the triangle.
+        const V3d on_ray =
+            V3d(rays[i].origin_x, rays[i].origin_y, rays[i].origin_z) +
+            static_cast<double>(hits[i].t) * V3d(rays[i].direction_x, rays[i].direction_y, rays[i].direction_z);
+        // The same quotients weigh the vertices in t and here: they differ by the oracle's bound, seen along the
+        // triangle.
         EXPECT_LE((on_triangle - on_ray).length(), 3.0 * stand(soup, triangle, rays[i]).t_error + 64.0 * unit_roundoff)
             << "ray " << i;
     }
@@ -109,10 +110,18 @@ TEST(BvhTraversal, DegenerateTrianglesNeitherHideOthersNorBreak) {
         const V3f a = random.in_cube(1.0f);
         const V3f b = random.in_cube(1.0f);
         switch (i % 4) {
-        case 0: add(soup, a, a, a); break;
-        case 1: add(soup, a, b, a); break;
-        case 2: add(soup, a, b, 0.5f * (a + b)); break;
-        default: add(soup, a, b, 0.5f * (a + b) + random.in_cube(1e-6f)); break;
+        case 0:
+            add(soup, a, a, a);
+            break;
+        case 1:
+            add(soup, a, b, a);
+            break;
+        case 2:
+            add(soup, a, b, 0.5f * (a + b));
+            break;
+        default:
+            add(soup, a, b, 0.5f * (a + b) + random.in_cube(1e-6f));
+            break;
         }
     }
     for (int i = 0; i < 40; ++i)
@@ -237,7 +246,8 @@ TEST(BvhTraversal, NoRayFromFarAwaySlipsThrough) {
     Random random(10);
     std::vector<Ray> rays;
     for (int i = 0; i < 1 << 17; ++i) {
-        V3f target = corner(1 + static_cast<int>(random.index(squares - 1)), 1 + static_cast<int>(random.index(squares - 1)));
+        V3f target =
+            corner(1 + static_cast<int>(random.index(squares - 1)), 1 + static_cast<int>(random.index(squares - 1)));
         target[static_cast<int>(random.index(2))] = random(0.1f, 0.9f);
         const V3f origin(random(2000.0f, 8000.0f), random(2000.0f, 8000.0f), random(2000.0f, 8000.0f));
         rays.push_back(make_ray(origin, (target - origin).normalized()));

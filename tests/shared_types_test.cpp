@@ -18,7 +18,10 @@ struct Field {
     std::size_t offset;
 };
 
-#define FIELD(type, name) Field{#type, #name, sizeof(type), offsetof(type, name)}
+#define FIELD(type, name)                                                                                              \
+    Field {                                                                                                            \
+#type, #name, sizeof(type), offsetof(type, name)                                                               \
+    }
 
 /// The last field of each struct and one after each change of meaning: an offset that is right there is right between.
 const std::vector<Field>& fields() {
@@ -43,6 +46,12 @@ const std::vector<Field>& fields() {
         FIELD(RayHit, v),
         FIELD(SceneConstants, camera_x),
         FIELD(SceneConstants, lens_radius),
+        FIELD(SceneConstants, corner_x),
+        FIELD(SceneConstants, right_x),
+        FIELD(SceneConstants, down_x),
+        FIELD(SceneConstants, centre_x),
+        FIELD(SceneConstants, lens_right_x),
+        FIELD(SceneConstants, lens_up_x),
         FIELD(SceneConstants, focal_distance),
         FIELD(SceneConstants, light_count),
         FIELD(SceneConstants, region_x),
@@ -53,34 +62,44 @@ const std::vector<Field>& fields() {
         FIELD(SceneConstants, image_height),
         FIELD(Triangle, v0_x),
         FIELD(Triangle, material),
+        FIELD(Triangle, edge1_x),
         FIELD(Triangle, light),
+        FIELD(Triangle, edge2_x),
         FIELD(Triangle, normals),
         FIELD(Triangle, normal_x),
-        FIELD(Triangle, unused),
+        FIELD(Triangle, normal_z),
         FIELD(SurfaceMaterial, kind),
         FIELD(SurfaceMaterial, dispersive),
-        FIELD(SurfaceMaterial, unused),
+        FIELD(SurfaceMaterial, k),
         FIELD(SceneLight, kind),
+        FIELD(SceneLight, spectrum),
+        FIELD(SceneLight, scale),
         FIELD(SceneLight, probability),
+        FIELD(SceneLight, position_x),
+        FIELD(SceneLight, direction_x),
+        FIELD(SceneLight, edge1_x),
+        FIELD(SceneLight, edge2_x),
         FIELD(SceneLight, cos_total_width),
         FIELD(SceneLight, cos_falloff_start),
         FIELD(SceneLight, area),
         FIELD(SceneLight, two_sided),
-        FIELD(SceneLight, unused),
         FIELD(VisiblePoint, x),
         FIELD(VisiblePoint, normal),
         FIELD(VisiblePoint, slot),
         FIELD(VisiblePoint, radius),
-        FIELD(VisiblePoint, unused),
+        FIELD(VisiblePoint, shadow_rays),
         FIELD(Photon, x),
         FIELD(Photon, normal),
         FIELD(Photon, flux_x),
         FIELD(Photon, slot),
         FIELD(FilmPixel, sum_high),
         FIELD(FilmPixel, sum_low),
+        FIELD(FilmPixel, square_high),
         FIELD(FilmPixel, square_low),
         FIELD(FilmPixel, samples),
-        FIELD(FilmPixel, statistics_count),
+        FIELD(FilmPixel, rejected),
+        FIELD(FilmPixel, statistics_radius),
+        FIELD(FilmPixel, shadow_rays),
     };
     return list;
 }

@@ -36,8 +36,10 @@ void add_bumpy_sphere(TriangleSoup& soup, const V3f& centre, float radius, int r
         const float theta = std::numbers::pi_v<float> * static_cast<float>(ring) / static_cast<float>(rings);
         const float phi =
             2.0f * std::numbers::pi_v<float> * static_cast<float>(segment % segments) / static_cast<float>(segments);
-        const V3f direction(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
-        const float bump = std::sin(23.0f * direction.x) * std::sin(19.0f * direction.y) * std::sin(17.0f * direction.z);
+        const float sine = ring == rings ? 0.0f : std::sin(theta); // exactly one south pole
+        const V3f direction(sine * std::cos(phi), std::cos(theta), sine * std::sin(phi));
+        const float bump =
+            std::sin(23.0f * direction.x) * std::sin(19.0f * direction.y) * std::sin(17.0f * direction.z);
         return centre + radius * (1.0f + 0.1f * bump) * direction;
     };
     for (int ring = 0; ring < rings; ++ring) {
@@ -69,10 +71,9 @@ BenchMesh boxes_in_room() {
 
 BenchMesh bumpy_spheres_in_room(const std::string& name, int triangles) {
     constexpr int spheres = 8;
-    constexpr std::array<V3f, spheres> centres{V3f(-0.5f, -0.6f, -0.3f), V3f(0.1f, -0.7f, -0.5f),
-                                               V3f(0.6f, -0.5f, 0.0f),   V3f(-0.1f, -0.6f, 0.3f),
-                                               V3f(-0.6f, 0.1f, 0.5f),   V3f(0.4f, 0.3f, 0.5f),
-                                               V3f(-0.2f, 0.5f, 0.0f),   V3f(0.5f, -0.65f, 0.6f)};
+    constexpr std::array<V3f, spheres> centres{
+        V3f(-0.5f, -0.6f, -0.3f), V3f(0.1f, -0.7f, -0.5f), V3f(0.6f, -0.5f, 0.0f), V3f(-0.1f, -0.6f, 0.3f),
+        V3f(-0.6f, 0.1f, 0.5f),   V3f(0.4f, 0.3f, 0.5f),   V3f(-0.2f, 0.5f, 0.0f), V3f(0.5f, -0.65f, 0.6f)};
     // A sphere of n rings and n segments has 2n(n-1) triangles.
     const int n = static_cast<int>(std::lround(std::sqrt(triangles / (2.0 * spheres)) + 0.5));
     BenchMesh mesh{name, {}};

@@ -9,9 +9,9 @@ namespace tristim {
 /// A node of the binary tree, its box already padded.
 struct BinaryNode {
     Imath::Box3f box;
-    int left = -1;       ///< index of the left child, -1 for a leaf
-    int right = -1;      ///< index of the right child
-    int triangle = -1;   ///< the leaf's triangle
+    int left = -1;     ///< index of the left child, -1 for a leaf
+    int right = -1;    ///< index of the right child
+    int triangle = -1; ///< the leaf's triangle
     int triangle_count = 1;
 
     bool is_leaf() const { return left < 0; }

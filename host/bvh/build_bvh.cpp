@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <limits>
 
-// Collapse of a binary tree into an eight-wide one with the least expected cost: Ylitie, Karras & Laine 2017, "Efficient
-// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2, equations 1-6. C(n, i) is the least cost of
-// representing the subtree at n by at most i siblings. Unlike theirs, a leaf is one block of eight triangles that costs
-// the same however full it is.
+// Collapse of a binary tree into an eight-wide one with the least expected cost: Ylitie, Karras & Laine 2017,
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2, equations 1-6. C(n, i) is the
+// least cost of representing the subtree at n by at most i siblings. Unlike theirs, a leaf is one block of eight
+// triangles that costs the same however full it is.
 
 namespace tristim {
 namespace {
@@ -18,14 +18,17 @@ constexpr float leaf_cost = 1.0f; ///< testing eight triangles, where testing ei
 
 /// The best ways to represent one binary subtree.
 struct Choice {
-    std::array<float, width> cost{};          ///< cost[i]: as at most i siblings, i ≥ 1
-    std::array<std::uint8_t, width + 1> left{}; ///< left[i]: how many of i siblings the left child gets; 0: i-1 are as good
-    bool one_leaf = false;                    ///< as one sibling: a leaf rather than a node
+    std::array<float, width> cost{}; ///< cost[i]: as at most i siblings, i ≥ 1
+    std::array<std::uint8_t, width + 1>
+        left{};            ///< left[i]: how many of i siblings the left child gets; 0: i-1 are as good
+    bool one_leaf = false; ///< as one sibling: a leaf rather than a node
 };
 
 using Tree = std::vector<BinaryNode>;
 
-const BinaryNode& at(const Tree& tree, int index) { return tree[static_cast<std::size_t>(index)]; }
+const BinaryNode& at(const Tree& tree, int index) {
+    return tree[static_cast<std::size_t>(index)];
+}
 
 float half_area(const Imath::Box3f& box) {
     const V3f size = box.size();
@@ -40,8 +43,7 @@ std::vector<Choice> choose(const Tree& tree) {
         const BinaryNode& node = tree[n];
         Choice& choice = choices[n];
         const float area = scale * half_area(node.box);
-        const float as_leaf =
-            node.triangle_count <= width ? leaf_cost * area : std::numeric_limits<float>::infinity();
+        const float as_leaf = node.triangle_count <= width ? leaf_cost * area : std::numeric_limits<float>::infinity();
         if (node.is_leaf()) {
             choice.cost.fill(as_leaf);
             choice.one_leaf = true;
@@ -136,9 +138,9 @@ int append_node(const Tree& tree, const std::vector<Choice>& choices, int n, std
     gather_children(tree, choices, n, siblings, children);
     const std::size_t index = bvh.nodes.size();
     bvh.nodes.push_back(empty_node());
-    // A node's children lie on the stack together; one is popped before its own children are pushed.
+    // The traversal goes on with one child; the others wait on the stack.
     const int waiting = static_cast<int>(children.size()) - 1;
-    int needed = waiting + 1;
+    int needed = waiting;
     for (std::size_t slot = 0; slot < children.size(); ++slot) {
         const int child = children[slot];
         set_box(bvh.nodes[index], slot, at(tree, child).box);
@@ -157,7 +159,6 @@ int append_node(const Tree& tree, const std::vector<Choice>& choices, int n, std
 
 Bvh build_bvh(const TriangleSoup& triangles, unsigned threads) {
     Bvh bvh;
-    bvh.stack_size = 1; // the root
     const Tree tree = build_binary_tree(triangles, threads);
     if (tree.empty()) {
         bvh.nodes.push_back(empty_node());

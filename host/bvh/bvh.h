@@ -10,9 +10,9 @@ namespace tristim {
 
 /// An 8-wide BVH flattened for the traversal kernels (layout in kernels/shared_types.h).
 struct Bvh {
-    std::vector<BvhNode> nodes;    ///< nodes[0] is the root
-    std::vector<BvhLeaf> leaves;   ///< blocks of eight triangles
-    int stack_size = 0;            ///< stack entries that a traversal can need, from the built tree: -D BVH_STACK_SIZE
+    std::vector<BvhNode> nodes;  ///< nodes[0] is the root
+    std::vector<BvhLeaf> leaves; ///< blocks of eight triangles
+    int stack_size = 0;          ///< stack entries that a traversal can need, from the built tree: -D BVH_STACK_SIZE
 };
 
 /// A triangle soup: positions of v0, v1, v2 for each triangle. Triangle ids in leaves are indices into it.

@@ -9,7 +9,7 @@ constexpr std::size_t work_group_size = 64;
 
 Macros traversal_macros(const Bvh& bvh) {
     constexpr int step = 32;
-    return {{"BVH_STACK_SIZE", std::to_string((bvh.stack_size + step - 1) / step * step)}};
+    return {{"BVH_STACK_SIZE", std::to_string((bvh.stack_size / step + 1) * step)}};
 }
 
 RayTracer::RayTracer(const Device& device, const Bvh& bvh, const BuildOptions& options)
@@ -42,9 +42,13 @@ void RayTracer::run(::cl::Kernel& kernel, const ::cl::Buffer& results) {
     device_.queue.finish();
 }
 
-void RayTracer::run_closest() { run(closest_, hits_.cl()); }
+void RayTracer::run_closest() {
+    run(closest_, hits_.cl());
+}
 
-void RayTracer::run_any() { run(any_, occluded_.cl()); }
+void RayTracer::run_any() {
+    run(any_, occluded_.cl());
+}
 
 std::vector<RayHit> RayTracer::trace_closest(const std::vector<Ray>& rays) {
     set_rays(rays);

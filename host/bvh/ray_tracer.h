@@ -20,7 +20,8 @@ class RayTracer {
     /// For each ray, 1 if anything is hit at 0 < t < t_max, else 0.
     std::vector<std::int32_t> trace_any(const std::vector<Ray>& rays);
 
-    /// The parts of the above, to be timed apart: rays go to the device once, then a traversal leaves its results there.
+    /// The parts of the above, to be timed apart: rays go to the device once, then a traversal leaves its results
+    /// there.
     void set_rays(const std::vector<Ray>& rays);
     void run_closest();
     void run_any();

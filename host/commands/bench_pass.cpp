@@ -16,7 +16,7 @@ namespace {
 
 struct BenchPassCommand {
     RenderArguments arguments;
-    int repeats = 15;
+    int repeats = 32;
     bool json = false;
 };
 
@@ -46,17 +46,19 @@ PassRays record_pass(const Scene& scene, RenderOptions options, const Device& de
 struct Measured {
     double pass = 0.0;
     double rays_alone = 0.0;
-    double ratio = 0.0;  ///< of pass to rays alone, of the same repeat
+    double ratio = 0.0; ///< of pass to rays alone, of the same repeat
     std::array<double, step_names.size()> steps{};
 };
 
-Measured measure(Renderer& renderer, RayTracer& closest, RayTracer& any, std::uint32_t pass, int repeats) {
+/// Times the first passes of a render, from 0 on, as they come: radii shrink from pass to pass.
+Measured measure(Renderer& renderer, RayTracer& closest, RayTracer& any, int repeats) {
     std::vector<double> passes, alone, ratios;
     std::array<std::vector<double>, step_names.size()> steps;
-    for (int repeat = -2; repeat < repeats; ++repeat) { // the first two warm up
+    constexpr int warm_up = 2; // kernels are compiled for their work-group size when first launched
+    for (int repeat = -warm_up; repeat < repeats; ++repeat) {
         const auto before = renderer.statistics().step_seconds;
         const Stopwatch of_pass;
-        renderer.render_pass(pass);
+        renderer.render_pass(static_cast<std::uint32_t>(std::max(repeat, 0)));
         const double pass_ms = 1e3 * of_pass.seconds();
         const Stopwatch of_rays;
         closest.run_closest();
@@ -82,14 +84,14 @@ void run(const BenchPassCommand& command) {
     const Scene scene = load_scene(command.arguments.scene);
     const RenderOptions options = resolve_options(command.arguments, scene);
     const Device device = open_device(command.arguments.device);
-    constexpr std::uint32_t pass = 0;
-    const PassRays rays = record_pass(scene, options, device, pass);
+    // The number of rays hardly changes between passes: those of the middle one serve for all.
+    const PassRays rays = record_pass(scene, options, device, static_cast<std::uint32_t>(command.repeats / 2));
     Renderer renderer(scene, options, device);
     RayTracer closest(device, renderer.bvh(), {options.fast_math, ""});
     RayTracer any(device, renderer.bvh(), {options.fast_math, ""});
     closest.set_rays(rays.closest);
     any.set_rays(rays.any);
-    const Measured measured = measure(renderer, closest, any, pass, command.repeats);
+    const Measured measured = measure(renderer, closest, any, command.repeats);
 
     const std::uint64_t renders = renderer.statistics().passes;
     const RayTotals totals = renderer.rays();
@@ -99,17 +101,17 @@ void run(const BenchPassCommand& command) {
     json["ratio"] = measured.ratio;
     for (std::size_t step = 0; step < step_names.size(); ++step)
         json["steps_ms"][step_names[step]] = measured.steps[step];
-    json["rays"] = {{"camera", totals.camera / renders},
-                    {"shadow", totals.shadow / renders},
-                    {"photon", totals.photon / renders}};
+    json["rays"] = {
+        {"camera", totals.camera / renders}, {"shadow", totals.shadow / renders}, {"photon", totals.photon / renders}};
     json["bytes_per_pixel"] = renderer.statistics().bytes_per_pixel;
     json["bytes_per_photon"] = renderer.statistics().bytes_per_photon;
     if (command.json) {
         fmt::print("{}\n", json.dump(2));
         return;
     }
-    fmt::print("{} with {} at {}x{}, {} photons, on {}: medians of {}\n", command.arguments.scene, options.method.name(),
-               options.width, options.height, options.photons_per_pass, device.info.name, command.repeats);
+    fmt::print("{} with {} at {}x{}, {} photons, on {}: medians of {}\n", command.arguments.scene,
+               options.method.name(), options.width, options.height, options.photons_per_pass, device.info.name,
+               command.repeats);
     fmt::print("pass            {:8.2f} ms\n", measured.pass);
     for (std::size_t step = 0; step < step_names.size(); ++step)
         fmt::print("  {:<13} {:8.2f} ms\n", step_names[step], measured.steps[step]);
@@ -126,7 +128,8 @@ void add_bench_pass_command(CLI::App& app) {
     auto command = std::make_shared<BenchPassCommand>();
     CLI::App* sub = app.add_subcommand("bench-pass", "Time a pass by step, beside its rays alone");
     add_render_arguments(*sub, command->arguments);
-    sub->add_option("--repeats", command->repeats, "Passes to time, medians count")->capture_default_str();
+    sub->add_option("--repeats", command->repeats, "Passes to time, from the first on; medians count")
+        ->capture_default_str();
     sub->add_flag("--json", command->json, "Print JSON");
     sub->callback([command] { run(*command); });
 }

@@ -71,14 +71,14 @@ V3f cosine_direction(const V3f& normal, Random& random) {
     return radius * std::cos(phi) * tangent + radius * std::sin(phi) * (normal % tangent) + height * normal;
 }
 
-/// Pinhole camera at one wall, pixels row by row.
+/// Pinhole camera at one wall, off the middle lest pixels fall exactly into the corners of the room; pixels row by row.
 RaySet primary_rays(int count) {
     RaySet set{"primary", Query::Closest, {}};
     const int width = static_cast<int>(std::ceil(std::sqrt(count)));
     for (int i = 0; i < count; ++i) {
         const float x = (static_cast<float>(i % width) + 0.5f) / static_cast<float>(width) - 0.5f;
         const float y = (static_cast<float>(i / width) + 0.5f) / static_cast<float>(width) - 0.5f;
-        set.rays.push_back(make_ray(V3f(0.0f, 0.0f, -0.99f), V3f(1.2f * x, -1.2f * y, 1.0f).normalized(),
+        set.rays.push_back(make_ray(V3f(0.03f, 0.02f, -0.99f), V3f(1.2f * x, -1.2f * y, 1.0f).normalized(),
                                     std::numeric_limits<float>::infinity()));
     }
     return set;
@@ -90,7 +90,8 @@ struct SurfacePoint {
 };
 
 /// Where rays hit, moved off the surface.
-std::vector<SurfacePoint> surface_points(const TriangleSoup& triangles, const RaySet& set, const std::vector<RayHit>& hits) {
+std::vector<SurfacePoint> surface_points(const TriangleSoup& triangles, const RaySet& set,
+                                         const std::vector<RayHit>& hits) {
     constexpr float lift = 1e-4f;
     std::vector<SurfacePoint> points;
     for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -109,7 +110,9 @@ std::vector<SurfacePoint> surface_points(const TriangleSoup& triangles, const Ra
     return points;
 }
 
-V3f point_on_ceiling_light(Random& random) { return {0.5f * random() - 0.25f, 0.98f, 0.5f * random() - 0.25f}; }
+V3f point_on_ceiling_light(Random& random) {
+    return {0.5f * random() - 0.25f, 0.98f, 0.5f * random() - 0.25f};
+}
 
 RaySet diffuse_rays(const std::vector<SurfacePoint>& points) {
     RaySet set{"diffuse", Query::Closest, {}};

@@ -24,8 +24,8 @@ void run() {
         fmt::print("{} {}  {}\n", d.index == chosen ? '*' : ' ', d.index, d.name);
         fmt::print("     platform {}, driver {}, {}\n", d.platform, d.driver, d.opencl_c);
         fmt::print("     {}, {} compute units, vectors of {} floats, {:.1f} GiB ({:.1f} GiB in one buffer), {}\n",
-                   type_name(d.type), d.compute_units, d.preferred_float_width, static_cast<double>(d.global_memory) / gib,
-                   static_cast<double>(d.largest_allocation) / gib,
+                   type_name(d.type), d.compute_units, d.preferred_float_width,
+                   static_cast<double>(d.global_memory) / gib, static_cast<double>(d.largest_allocation) / gib,
                    d.compiler ? "can render" : "cannot render: no OpenCL C compiler");
     }
     fmt::print("* is the device that runs without --device (or set TRISTIM_DEVICE)\n");

@@ -8,8 +8,8 @@
 
 namespace tristim {
 
-/// The progress line of a render on stderr: pass, photons, photons/s, elapsed, remaining. On a terminal it is rewritten in
-/// place ten times a second; elsewhere a new line appears every ten seconds.
+/// The progress line of a render on stderr: pass, photons, photons/s, elapsed, remaining. On a terminal it is rewritten
+/// in place ten times a second; elsewhere a new line appears every ten seconds.
 class Progress {
   public:
     struct Limits {

@@ -32,7 +32,9 @@ struct RenderCommand {
     bool quiet = false;
 };
 
-bool is_exr(const std::string& path) { return std::filesystem::path(path).extension() == ".exr"; }
+bool is_exr(const std::string& path) {
+    return std::filesystem::path(path).extension() == ".exr";
+}
 
 Progress::Limits limits(const RenderCommand& command, const Scene& scene) {
     if (command.passes && *command.passes == 0)
@@ -102,8 +104,9 @@ void run(RenderCommand& command) {
     const FilmImage film = renderer.film();
     const XyzImage image{film.full_width, film.full_height, film.region, film.xyz};
     const ColourSpace space = command.space == "xyz" ? ColourSpace::CieXyz : ColourSpace::Srgb;
-    const ToneMapping tone_mapping{
-        command.tone_mapping == "linear" ? ToneMapping::Kind::Linear : ToneMapping::Kind::Photographic, command.exposure};
+    const ToneMapping tone_mapping{command.tone_mapping == "linear" ? ToneMapping::Kind::Linear
+                                                                    : ToneMapping::Kind::Photographic,
+                                   command.exposure};
     for (const std::string& path : command.outfiles) {
         if (is_exr(path))
             write_exr(path, image, space, metadata(renderer, command.arguments.scene, film.rejected_samples));

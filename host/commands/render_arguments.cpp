@@ -46,7 +46,9 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
                     "al. 2008)")
         ->check(CLI::IsMember({"global", "statistics"}))
         ->capture_default_str();
-    command.add_option("--initial-radius", a.initial_radius, "First search radius in scene units, or auto [scene, else auto]")
+    command
+        .add_option("--initial-radius", a.initial_radius,
+                    "First search radius in scene units, or auto [scene, else auto]")
         ->type_name("R|auto");
     command.add_option("--max-depth", a.max_depth, "Vertices after which a path ends [scene, else 16]");
     command.add_option("--math", a.math, "Kernel arithmetic: precise, or fast (relaxed math)")

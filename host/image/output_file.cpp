@@ -32,18 +32,15 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// An open temporary file that is removed unless it has been renamed.
+/// An open temporary file beside the target, removed unless it has replaced it.
 class TemporaryFile {
   public:
     TemporaryFile(const fs::path& target, std::string user_path)
-        : user_path_(std::move(user_path)),
-          name_(folder_of(target) / fmt::format(".{}.tmp{}", target.filename().string(), ::getpid())) {
-        descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+        : user_path_(std::move(user_path)), target_(target),
+          name_(folder_of(target) / fmt::format(".{}.tmp{}", target.filename().string(), ::getpid())),
+          descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
         if (descriptor_ < 0)
             fail_to_write(user_path_, std::strerror(errno));
-        struct stat existing {};
-        if (::stat(target.c_str(), &existing) == 0 && ::fchmod(descriptor_, existing.st_mode & 07777) != 0)
-            abandon();
     }
 
     ~TemporaryFile() {
@@ -59,25 +56,25 @@ class TemporaryFile {
         while (!bytes.empty()) {
             const ::ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
             if (count < 0 && errno != EINTR)
-                abandon();
+                fail_to_write(user_path_, std::strerror(errno));
             if (count > 0)
                 bytes = bytes.subspan(static_cast<std::size_t>(count));
         }
     }
 
-    void rename_to(const fs::path& target) {
-        if (::fsync(descriptor_) != 0 || close() != 0 || std::rename(name_.c_str(), target.c_str()) != 0)
-            abandon();
+    void replace_target() {
+        keep_permissions();
+        if (::fsync(descriptor_) != 0 || close() != 0 || std::rename(name_.c_str(), target_.c_str()) != 0)
+            fail_to_write(user_path_, std::strerror(errno));
         renamed_ = true;
     }
 
   private:
-    /// The destructor does not run for an exception from the constructor.
-    [[noreturn]] void abandon() {
-        const std::string reason = std::strerror(errno);
-        close();
-        ::unlink(name_.c_str());
-        fail_to_write(user_path_, reason);
+    /// Those of the file that is replaced. A file system that knows no permissions is no reason to lose the data.
+    void keep_permissions() {
+        struct stat existing {};
+        if (::stat(target_.c_str(), &existing) == 0)
+            static_cast<void>(::fchmod(descriptor_, existing.st_mode & 07777));
     }
 
     int close() {
@@ -87,6 +84,7 @@ class TemporaryFile {
     }
 
     std::string user_path_;
+    fs::path target_;
     fs::path name_;
     int descriptor_ = -1;
     bool renamed_ = false;
@@ -117,10 +115,9 @@ void check_output_file(const std::string& path) {
 
 void replace_file(const std::string& path, std::span<const unsigned char> bytes) {
     check_output_file(path);
-    const fs::path target = final_path(path);
-    TemporaryFile file(target, path);
+    TemporaryFile file(final_path(path), path);
     file.write(bytes);
-    file.rename_to(target);
+    file.replace_target();
 }
 
 } // namespace tristim

@@ -12,8 +12,8 @@ namespace tristim {
 /// From scene-referred XYZ to what a display shows. Chromaticity is kept: X, Y and Z are scaled by Y'/Y.
 ///
 /// Photographic: the global operator of Reinhard, Stark, Shirley & Ferwerda, "Photographic Tone Reproduction for
-/// Digital Images", 2002 (also in Reinhard, Ward, Pattanaik & Debevec, "High Dynamic Range Imaging", 2005), with key a
-/// = 0.18:
+/// Digital Images", 2002 (also in Reinhard, Ward, Pattanaik & Debevec, "High Dynamic Range Imaging", 2005), with key
+/// a = 0.18:
 ///
 ///     L  = 2^exposure · a · Y / Y_mean                  (equation 2)
 ///     Y' = L · (1 + L / L_white²) / (1 + L)             (equation 4)

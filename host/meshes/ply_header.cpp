@@ -98,8 +98,10 @@ void HeaderReader::read_list() {
         refuse("a list other than \"vertex_indices\" of \"face\" is not supported");
     if (!count_types.contains(words_[2]) || !integer_types.contains(words_[3]))
         refuse("the types \"{}\" and \"{}\" of \"{}\" are not supported", words_[2], words_[3], words_[4]);
-    if (!element.properties.insert("vertex_indices").second)
-        refuse("\"vertex_indices\" is given twice");
+    // OpenMesh 9 forgets what stands before, and would take its values for indices.
+    if (!element.properties.empty())
+        refuse("\"{}\" must be the first property of \"face\" and the only list", words_[4]);
+    element.properties.insert("vertex_indices");
     element.lines.push_back(fmt::format("property list {} {} vertex_indices", words_[2], words_[3]));
 }
 

@@ -93,7 +93,9 @@ std::string environment_selector() {
 
 } // namespace
 
-std::vector<DeviceInfo> list_devices() { return infos(enumerate()); }
+std::vector<DeviceInfo> list_devices() {
+    return infos(enumerate());
+}
 
 int default_device_index(const std::vector<DeviceInfo>& devices) {
     if (const std::string selector = environment_selector(); !selector.empty())

@@ -10,16 +10,16 @@ namespace tristim {
 
 /// What an OpenCL device says of itself.
 struct DeviceInfo {
-    int index = 0;  ///< position among all devices of all platforms; `--device INDEX`
+    int index = 0; ///< position among all devices of all platforms; `--device INDEX`
     std::string platform;
     std::string name;
     std::string driver;
-    std::string opencl_c;            ///< "OpenCL C 1.2 pocl"
+    std::string opencl_c; ///< "OpenCL C 1.2 pocl"
     cl_device_type type = 0;
     unsigned compute_units = 0;
     unsigned preferred_float_width = 0;
-    std::uint64_t global_memory = 0;       ///< bytes
-    std::uint64_t largest_allocation = 0;  ///< bytes
+    std::uint64_t global_memory = 0;      ///< bytes
+    std::uint64_t largest_allocation = 0; ///< bytes
     bool fp64 = false;
     bool compiler = false;
 };

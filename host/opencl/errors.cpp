@@ -8,7 +8,8 @@ namespace tristim {
 namespace {
 
 const std::map<cl_int, const char*>& error_names() {
-#define NAMED(code) {code, #code}
+#define NAMED(code)                                                                                                    \
+    { code, #code }
     static const std::map<cl_int, const char*> names{
         NAMED(CL_DEVICE_NOT_FOUND),
         NAMED(CL_DEVICE_NOT_AVAILABLE),
@@ -59,7 +60,8 @@ const char* advice(cl_int code) {
     case CL_OUT_OF_RESOURCES:
     case CL_OUT_OF_HOST_MEMORY:
     case CL_INVALID_BUFFER_SIZE:
-        return "the device has too little memory; lower --resolution or --photons, or use a method with fewer wavelengths";
+        return "the device has too little memory; lower --resolution or --photons, or use a method with fewer "
+               "wavelengths";
     case CL_DEVICE_NOT_AVAILABLE:
         return "another device may work: see 'tristim devices'";
     case -1001:

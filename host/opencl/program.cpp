@@ -8,17 +8,20 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 namespace tristim {
 namespace {
 
-void append_flattened(const std::string& file, std::set<std::string>& seen, std::string& out) {
-    if (!seen.insert(file).second)
-        return;
+std::string_view embedded_kernel(const std::string& file) {
     const auto found = embedded_files().find("kernels/" + file);
     if (found == embedded_files().end())
         fail("kernel source '{}' is not part of this binary", file);
-    std::istringstream lines{std::string(found->second)};
+    return found->second;
+}
+
+void append_flattened(const std::string& file, std::string_view text, std::set<std::string>& seen, std::string& out) {
+    std::istringstream lines{std::string(text)};
     std::string line;
     int number = 0;
     out += fmt::format("#line 1 \"{}\"\n", file);
@@ -26,8 +29,10 @@ void append_flattened(const std::string& file, std::set<std::string>& seen, std:
         ++number;
         const std::string directive = "#include \"";
         if (line.rfind(directive, 0) == 0) {
-            append_flattened(line.substr(directive.size(), line.find('"', directive.size()) - directive.size()), seen,
-                             out);
+            const std::string included =
+                line.substr(directive.size(), line.find('"', directive.size()) - directive.size());
+            if (seen.insert(included).second)
+                append_flattened(included, embedded_kernel(included), seen, out);
             out += fmt::format("#line {} \"{}\"\n", number + 1, file);
         } else {
             out += line + "\n";
@@ -44,7 +49,8 @@ std::string compiler_options(const Macros& macros, const BuildOptions& options) 
     return text;
 }
 
-void dump(const std::string& kernel_file, const std::string& source, const Macros& macros, const BuildOptions& options) {
+void dump(const std::string& kernel_file, const std::string& source, const Macros& macros,
+          const BuildOptions& options) {
     std::error_code ignored; // an unusable folder shows up when the file is written
     std::filesystem::create_directories(options.dump_dir, ignored);
     const std::filesystem::path path = std::filesystem::path(options.dump_dir) / kernel_file;
@@ -63,23 +69,30 @@ void dump(const std::string& kernel_file, const std::string& source, const Macro
 } // namespace
 
 std::string flatten_kernel_source(const std::string& kernel_file) {
-    std::set<std::string> seen;
+    std::set<std::string> seen{kernel_file};
     std::string source;
-    append_flattened(kernel_file, seen, source);
+    append_flattened(kernel_file, embedded_kernel(kernel_file), seen, source);
     return source;
 }
 
 ::cl::Program build_program(const Device& device, const std::string& kernel_file, const Macros& macros,
                             const BuildOptions& options) {
-    const std::string source = flatten_kernel_source(kernel_file);
+    return build_program_from_text(device, kernel_file, std::string(embedded_kernel(kernel_file)), macros, options);
+}
+
+::cl::Program build_program_from_text(const Device& device, const std::string& name, const std::string& text,
+                                      const Macros& macros, const BuildOptions& options) {
+    std::set<std::string> seen{name};
+    std::string source;
+    append_flattened(name, text, seen, source);
     if (!options.dump_dir.empty())
-        dump(kernel_file, source, macros, options);
+        dump(name, source, macros, options);
     ::cl::Program program(device.context, source);
     try {
         program.build(device.device, compiler_options(macros, options).c_str());
     } catch (const ::cl::Error& error) {
-        fail("kernel '{}' does not build on '{}' ({}):\n{}", kernel_file, device.info.name,
-             opencl_error_name(error.err()), program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device));
+        fail("kernel '{}' does not build on '{}' ({}):\n{}", name, device.info.name, opencl_error_name(error.err()),
+             program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device));
     }
     return program;
 }

@@ -13,8 +13,8 @@ using Macros = std::vector<std::pair<std::string, std::string>>;
 
 /// How programs are built.
 struct BuildOptions {
-    bool fast_math = false;  ///< -cl-fast-relaxed-math and native_* functions
-    std::string dump_dir;    ///< if set, the exact source that ran is written there, its options as #defines on top
+    bool fast_math = false; ///< -cl-fast-relaxed-math and native_* functions
+    std::string dump_dir;   ///< if set, the exact source that ran is written there, its options as #defines on top
 };
 
 /// The source of a kernel file ("eye_pass.cl") with its includes put in place, each once.
@@ -23,5 +23,10 @@ std::string flatten_kernel_source(const std::string& kernel_file);
 /// Builds one kernel file for a device. Throws Error with the build log if it does not compile.
 ::cl::Program build_program(const Device& device, const std::string& kernel_file, const Macros& macros,
                             const BuildOptions& options);
+
+/// The same for source text that is no kernel file itself but may #include kernel files and headers, such as a test's;
+/// `name` is for messages and for the dumped file.
+::cl::Program build_program_from_text(const Device& device, const std::string& name, const std::string& text,
+                                      const Macros& macros, const BuildOptions& options);
 
 } // namespace tristim

@@ -26,16 +26,12 @@ Effects derive_effects(const Scene& scene) {
 
 Macros effect_macros(const Effects& effects) {
     const auto flag = [](bool on) { return on ? "1" : "0"; };
-    return {{"HAS_DIELECTRIC", flag(effects.dielectric)},
-            {"HAS_DISPERSION", flag(effects.dispersion)},
-            {"HAS_CONDUCTOR", flag(effects.conductor)},
-            {"HAS_SHADING_NORMALS", flag(effects.shading_normals)},
-            {"HAS_THIN_LENS", flag(effects.thin_lens)},
-            {"HAS_POINT_LIGHT", flag(effects.point_light)},
-            {"HAS_SPOT_LIGHT", flag(effects.spot_light)},
-            {"HAS_DISTANT_LIGHT", flag(effects.distant_light)},
-            {"HAS_INFINITE_LIGHT", flag(effects.infinite_light)},
-            {"HAS_AREA_LIGHT", flag(effects.area_light)}};
+    return {
+        {"HAS_DIELECTRIC", flag(effects.dielectric)},         {"HAS_DISPERSION", flag(effects.dispersion)},
+        {"HAS_CONDUCTOR", flag(effects.conductor)},           {"HAS_SHADING_NORMALS", flag(effects.shading_normals)},
+        {"HAS_THIN_LENS", flag(effects.thin_lens)},           {"HAS_POINT_LIGHT", flag(effects.point_light)},
+        {"HAS_SPOT_LIGHT", flag(effects.spot_light)},         {"HAS_DISTANT_LIGHT", flag(effects.distant_light)},
+        {"HAS_INFINITE_LIGHT", flag(effects.infinite_light)}, {"HAS_AREA_LIGHT", flag(effects.area_light)}};
 }
 
 } // namespace tristim

@@ -8,7 +8,7 @@ namespace tristim {
 /// What a scene calls for. Kernels are built with these and hold nothing else.
 struct Effects {
     bool dielectric = false;
-    bool dispersion = false;  ///< a dielectric whose index depends on the wavelength
+    bool dispersion = false; ///< a dielectric whose index depends on the wavelength
     bool conductor = false;
     bool shading_normals = false;
     bool thin_lens = false;

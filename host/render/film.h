@@ -11,12 +11,12 @@ namespace tristim {
 
 /// The image after some passes: mean XYZ of each pixel and the variance of that mean, pixels in rows from the top.
 struct FilmImage {
-    int full_width = 0;  ///< of the whole image, of which this may be a region
+    int full_width = 0; ///< of the whole image, of which this may be a region
     int full_height = 0;
     Region region;
-    std::vector<std::array<float, 3>> xyz;       ///< radiance-like: a white of radiance 1 has Y = 1
-    std::vector<std::array<float, 3>> variance;  ///< of xyz, from the spread over the passes; 0 after one pass
-    std::uint64_t rejected_samples = 0;          ///< samples that were not finite
+    std::vector<std::array<float, 3>> xyz;      ///< radiance-like: a white of radiance 1 has Y = 1
+    std::vector<std::array<float, 3>> variance; ///< of xyz, from the spread over the passes; 0 after one pass
+    std::uint64_t rejected_samples = 0;         ///< samples that were not finite
 };
 
 /// Means and variances from the running sums of kernels/film.cl.

@@ -21,8 +21,8 @@ void store(const V3d& v, float& x, float& y, float& z) {
 /// pbrt's perspective camera as the plane of directions that SceneConstants describes.
 void place_camera(const Camera& camera, int width, int height, SceneConstants& c) {
     const double aspect = static_cast<double>(width) / height;
-    std::array<double, 4> window = aspect > 1.0 ? std::array{-aspect, aspect, -1.0, 1.0}
-                                                : std::array{-1.0, 1.0, -1.0 / aspect, 1.0 / aspect};
+    std::array<double, 4> window =
+        aspect > 1.0 ? std::array{-aspect, aspect, -1.0, 1.0} : std::array{-1.0, 1.0, -1.0 / aspect, 1.0 / aspect};
     if (camera.screen_window)
         window = *camera.screen_window;
     const double scale = std::tan(camera.fov_degrees * pi / 360.0);
@@ -73,6 +73,13 @@ void add_materials(const Scene& scene, FlatScene& flat) {
     }
 }
 
+float largest_coordinate(const std::array<V3f, 3>& vertices) {
+    float largest = 0.0F;
+    for (const V3f& v : vertices)
+        largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return largest;
+}
+
 /// Adds a shape's triangles; `area_light` and its spectrum's row apply if the shape emits.
 void add_triangles(const Shape& shape, const Light* area_light, int spectrum, FlatScene& flat) {
     for (const auto& corners : shape.mesh.triangles) {
@@ -89,6 +96,7 @@ void add_triangles(const Shape& shape, const Light* area_light, int spectrum, Fl
         store(edge1, t.edge1_x, t.edge1_y, t.edge1_z);
         store(edge2, t.edge2_x, t.edge2_y, t.edge2_z);
         store(normal, t.normal_x, t.normal_y, t.normal_z);
+        t.extent = largest_coordinate({v0, v1, v2});
         t.material = shape.material;
         t.light = -1;
         t.normals = -1;
@@ -106,6 +114,7 @@ void add_triangles(const Shape& shape, const Light* area_light, int spectrum, Fl
             light.scale = static_cast<float>(area_light->scale);
             light.two_sided = area_light->two_sided ? 1 : 0;
             light.area = static_cast<float>(0.5 * cross.length());
+            light.extent = t.extent;
             store(V3d(v0), light.position_x, light.position_y, light.position_z);
             store(normal, light.direction_x, light.direction_y, light.direction_z);
             store(edge1, light.edge1_x, light.edge1_y, light.edge1_z);

@@ -13,17 +13,17 @@ namespace tristim {
 /// A scene in the arrays that the kernels read.
 struct FlatScene {
     SceneConstants constants{};
-    TriangleSoup soup;                ///< for build_bvh
-    std::vector<Triangle> triangles;  ///< same order
-    std::vector<float> normals;       ///< nine floats for each triangle that has vertex normals
+    TriangleSoup soup;               ///< for build_bvh
+    std::vector<Triangle> triangles; ///< same order
+    std::vector<float> normals;      ///< nine floats for each triangle that has vertex normals
     std::vector<SurfaceMaterial> materials;
-    std::vector<SceneLight> lights;  ///< an area light becomes one for each of its triangles
-    std::vector<float> light_cdf;    ///< lights.size() + 1 values, by power
+    std::vector<SceneLight> lights; ///< an area light becomes one for each of its triangles
+    std::vector<float> light_cdf;   ///< lights.size() + 1 values, by power
     SpectrumTable spectra;
 };
 
-/// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no light
-/// within the visible range.
+/// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no
+/// light within the visible range.
 FlatScene flatten_scene(const Scene& scene, int width, int height, const Region& region);
 
 } // namespace tristim

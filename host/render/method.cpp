@@ -13,7 +13,7 @@ int Method::wavelengths() const {
         return 3 * sets;
     case Kind::Spectral:
         return lambda_bins;
-    case Kind::Rgb:
+    case Kind::RgbBands:
         break;
     }
     return 3;
@@ -25,7 +25,7 @@ std::string Method::name() const {
         return fmt::format("tristimulus:{}", sets);
     case Kind::Spectral:
         return fmt::format("spectral:{}", lambda_bins);
-    case Kind::Rgb:
+    case Kind::RgbBands:
         break;
     }
     return "rgb";
@@ -33,7 +33,7 @@ std::string Method::name() const {
 
 Method parse_method(const std::string& text) {
     if (text == "rgb")
-        return {Method::Kind::Rgb, 1};
+        return {Method::Kind::RgbBands, 1};
     if (text == "spectral:400")
         return {Method::Kind::Spectral, 1};
     const std::string prefix = "tristimulus:";

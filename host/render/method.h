@@ -8,12 +8,12 @@ namespace tristim {
 
 /// A rendering method: how the wavelengths of a pass are chosen and weighted.
 struct Method {
-    enum class Kind { Tristimulus, Spectral, Rgb };
+    enum class Kind { Tristimulus, Spectral, RgbBands };
     Kind kind = Kind::Tristimulus;
-    int sets = 1;  ///< Tristimulus: N, sets of three wavelengths
+    int sets = 1; ///< Tristimulus: N, sets of three wavelengths
 
-    int wavelengths() const;   ///< W
-    std::string name() const;  ///< "tristimulus:1", as the command line takes it
+    int wavelengths() const;  ///< W
+    std::string name() const; ///< "tristimulus:1", as the command line takes it
 };
 
 /// The most sets that tristimulus:N accepts.

@@ -13,19 +13,19 @@ namespace tristim {
 /// How a scene is rendered; the scene's own settings fill what the user leaves open (resolve_options).
 struct RenderOptions {
     Method method;
-    bool random_sequence = false;    ///< the paper's plain random wavelengths instead of the stratified sequence
+    bool random_sequence = false; ///< the paper's plain random wavelengths instead of the stratified sequence
     int width = 0;
     int height = 0;
     Region region;
-    int photons_per_pass = 0;        ///< photon paths
-    int max_depth = 0;               ///< vertices of a path
-    std::optional<double> radius;    ///< initial search radius, scene units; none: a pilot pass measures it per pixel
+    int photons_per_pass = 0;     ///< photon paths
+    int max_depth = 0;            ///< vertices of a path
+    std::optional<double> radius; ///< initial search radius, scene units; none: a pilot pass measures it per pixel
     std::uint32_t seed = 0;
-    bool direct_photons = false;     ///< photons count from their first hit, direct light is not sampled
-    bool statistics_radius = false;  ///< Hachisuka et al. 2008's statistics of each pixel
+    bool direct_photons = false;    ///< photons count from their first hit, direct light is not sampled
+    bool statistics_radius = false; ///< Hachisuka et al. 2008's statistics of each pixel
     bool fast_math = false;
-    std::string dump_kernels;        ///< folder for the programs as built, or empty
-    bool record_rays = false;        ///< keep every ray of the last pass, for bench-pass
+    std::string dump_kernels; ///< folder for the programs as built, or empty
+    bool record_rays = false; ///< keep every ray of the last pass, for bench-pass
 };
 
 inline constexpr int default_photons_per_pass = 65536;

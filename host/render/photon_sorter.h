@@ -11,8 +11,8 @@
 
 namespace tristim {
 
-/// Sorts photons into the hash grid (kernels/photon_grid.cl): pairs of bucket and photon in ascending, stable order, and where
-/// each bucket begins.
+/// Sorts photons into the hash grid (kernels/photon_grid.cl): pairs of bucket and photon in ascending, stable order,
+/// and where each bucket begins.
 class PhotonSorter {
   public:
     PhotonSorter() = default;
@@ -29,8 +29,8 @@ class PhotonSorter {
     void count(const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue);
 
     struct Summary {
-        std::uint32_t photons;        ///< in all
-        std::uint32_t most_per_item;  ///< that one item would have stored; more than the capacity: some are missing
+        std::uint32_t photons;       ///< in all
+        std::uint32_t most_per_item; ///< that one item would have stored; more than the capacity: some are missing
     };
     /// What count() found; waits for the device.
     Summary summary(const Device& device) const;

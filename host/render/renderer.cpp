@@ -62,8 +62,8 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     spectrum_rows_ = flat.spectra.rows();
     const auto padded = static_cast<std::size_t>(layout_.padded());
     constexpr std::size_t rows_before_spectra = 4; // PASS_TABLE_SPECTRA of kernels/spectrum.h
-    pass_table_ = Buffer<float>(device, "pass table",
-                                (rows_before_spectra + static_cast<std::size_t>(spectrum_rows_)) * padded);
+    pass_table_ =
+        Buffer<float>(device, "pass table", (rows_before_spectra + static_cast<std::size_t>(spectrum_rows_)) * padded);
 
     const auto pixels = static_cast<std::size_t>(options.region.pixels());
     radius0_ = Buffer<float>(device, "initial radii", pixels);
@@ -84,10 +84,9 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     allocate_photons(static_cast<std::uint32_t>(photons_per_path * std::min(paths, paths_per_item)));
 
     const Stopwatch rendering;
+    largest_radius0_ = options.radius ? static_cast<float>(*options.radius) : measure_radii();
     if (options.radius)
-        radius0_.fill(device_, static_cast<float>(*options.radius));
-    else
-        measure_radii();
+        radius0_.fill(device_, largest_radius0_);
     film_clear_.setArg(0, radius0_.cl());
     film_clear_.setArg(1, film_.cl());
     enqueue(Step::Film, film_clear_, pixels);
@@ -141,12 +140,14 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
                                    (store_spectra ? static_cast<double>(sizeof(float)) * layout_.padded() : 0.0);
 }
 
-void Renderer::measure_radii() {
+float Renderer::measure_radii() {
     radius0_.fill(device_, 1.0F);
     fill_wavelengths(pilot_pass);
     trace_eye_paths(pilot_pass, 1.0F);
     trace_photons(pilot_pass);
-    radius0_.write(device_, pilot_radii(visible_points(), options_.region.width, photons()));
+    const std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
+    radius0_.write(device_, radii);
+    return *std::max_element(radii.begin(), radii.end());
 }
 
 void Renderer::render_pass(std::uint32_t pass) {
@@ -188,6 +189,10 @@ void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
     eye_pass_.setArg(argument++, eye_spectra_.cl());
     enqueue(Step::EyePass, eye_pass_, visible_points_.size());
 
+    if (!options_.statistics_radius) {
+        largest_radius_.fill(device_, std::bit_cast<std::uint32_t>(largest_radius0_ * scale));
+        return;
+    }
     largest_radius_.fill(device_, 0U);
     film_largest_radius_.setArg(0, visible_points_.cl());
     film_largest_radius_.setArg(1, largest_radius_.cl());
@@ -207,26 +212,25 @@ void Renderer::trace_photons(std::uint32_t pass) {
         photon_pass_.setArg(argument++, item_rays_.cl());
         enqueue(Step::PhotonPass, photon_pass_, photon_items_);
         sorter_.count(item_counts_, [this](const ::cl::Kernel& k, std::size_t n) { enqueue(Step::Grid, k, n); });
-        const std::uint32_t needed = sorter_.summary(device_).most_per_item;
-        if (needed <= capacity_per_item_)
+        const PhotonSorter::Summary summary = sorter_.summary(device_);
+        photon_count_ = summary.photons;
+        if (summary.most_per_item <= capacity_per_item_)
             return;
-        allocate_photons(needed + needed / 4);
+        allocate_photons(summary.most_per_item + summary.most_per_item / 4);
     }
 }
 
 void Renderer::sort_photons() {
-    const std::uint32_t photons = sorter_.summary(device_).photons;
-    statistics_.photons_stored += photons;
-    sorter_.sort(scene_buffers_.constants(), photons_, largest_radius_, photons,
+    statistics_.photons_stored += photon_count_;
+    sorter_.sort(scene_buffers_.constants(), photons_, largest_radius_, photon_count_,
                  [this](const ::cl::Kernel& kernel, std::size_t items) { enqueue(Step::Grid, kernel, items); });
 }
 
 void Renderer::gather_photons() {
     cl_uint argument = 0;
-    for (const ::cl::Buffer* buffer :
-         {&scene_buffers_.constants().cl(), &pass_table_.cl(), &visible_points_.cl(), &eye_spectra_.cl(),
-          &photons_.cl(), &photon_spectra_.cl(), &sorter_.pairs().cl(), &sorter_.bucket_begin().cl(),
-          &largest_radius_.cl()})
+    for (const ::cl::Buffer* buffer : {&scene_buffers_.constants().cl(), &pass_table_.cl(), &visible_points_.cl(),
+                                       &eye_spectra_.cl(), &photons_.cl(), &photon_spectra_.cl(), &sorter_.pairs().cl(),
+                                       &sorter_.bucket_begin().cl(), &largest_radius_.cl()})
         gather_.setArg(argument++, *buffer);
     gather_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
     gather_.setArg(argument++, gathered_flux_.cl());
@@ -272,7 +276,9 @@ FilmImage Renderer::film() const {
     return develop_film(film_.read(device_), options_.width, options_.height, options_.region);
 }
 
-std::vector<Ray> Renderer::recorded_rays() const { return scene_buffers_.recorded_rays(device_); }
+std::vector<Ray> Renderer::recorded_rays() const {
+    return scene_buffers_.recorded_rays(device_);
+}
 
 std::vector<Photon> Renderer::photons() const {
     const std::vector<Photon> stored = photons_.read(device_);

@@ -15,8 +15,8 @@
 namespace tristim {
 
 /// Renders passes of a scene on a device. The image is the mean of the passes, each of which depends on the scene, the
-/// options and its number alone, so any passes may be rendered in any order (with --radius statistics: in ascending order
-/// from 0, since radii then depend on the passes before).
+/// options and its number alone, so any passes may be rendered in any order (with --radius statistics: in ascending
+/// order from 0, since radii then depend on the passes before).
 class Renderer {
   public:
     /// Builds tree, buffers and kernels, and measures initial radii by a pilot pass if the options give none.
@@ -48,7 +48,7 @@ class Renderer {
   private:
     void build_kernels();
     void allocate_photons(std::uint32_t capacity_per_item);
-    void measure_radii();
+    float measure_radii(); ///< by a pilot pass; returns the largest
 
     void fill_wavelengths(std::uint32_t pass);
     void trace_eye_paths(std::uint32_t pass, float scale);
@@ -75,6 +75,7 @@ class Renderer {
     Buffer<float> pass_table_;
 
     Buffer<float> radius0_;
+    float largest_radius0_ = 0.0F;
     Buffer<VisiblePoint> visible_points_;
     Buffer<float> eye_spectra_;
     Buffer<std::uint32_t> largest_radius_;
@@ -83,6 +84,7 @@ class Renderer {
 
     std::uint32_t photon_items_ = 0;
     std::uint32_t capacity_per_item_ = 0;
+    std::uint32_t photon_count_ = 0; ///< stored in the last pass
     Buffer<Photon> photons_;
     Buffer<float> photon_spectra_;
     Buffer<std::uint32_t> item_counts_;

@@ -55,11 +55,13 @@ std::vector<std::uint32_t> sobol_direction_numbers(int dimension) {
 }
 
 std::vector<std::uint32_t> sobol_table() {
+    std::vector<std::vector<std::uint32_t>> directions;
+    for (int dimension = 0; dimension < sobol_dimensions; ++dimension)
+        directions.push_back(sobol_direction_numbers(dimension));
     std::vector<std::uint32_t> table;
-    for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
-        const std::vector<std::uint32_t> v = sobol_direction_numbers(dimension);
-        for (std::size_t byte = 0; byte < 4; ++byte) {
-            for (std::uint32_t value = 0; value < 256; ++value) {
+    for (std::size_t byte = 0; byte < 4; ++byte) {
+        for (std::uint32_t value = 0; value < 256; ++value) {
+            for (const std::vector<std::uint32_t>& v : directions) {
                 std::uint32_t x = 0;
                 for (std::size_t bit = 0; bit < 8; ++bit) {
                     if ((value >> bit & 1u) != 0)

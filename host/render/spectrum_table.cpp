@@ -54,7 +54,7 @@ std::vector<float> SpectrumTable::values(const Method& method) const {
             values.push_back(static_cast<float>(value));
     };
     for (const Entry& entry : entries_) {
-        if (method.kind == Method::Kind::Rgb)
+        if (method.kind == Method::Kind::RgbBands)
             append(band_values(entry.spectrum, entry.use));
         else
             append(entry.spectrum.bins());
@@ -94,7 +94,7 @@ std::vector<float> sampler_table(const Method& method) {
                 append(value / cie_y_integral());
         }
         break;
-    case Method::Kind::Rgb:
+    case Method::Kind::RgbBands:
         for (const auto& row : rgb_to_xyz_matrix()) {
             for (const double value : row)
                 append(value);

@@ -12,9 +12,9 @@ class SpectrumTable {
   public:
     /// What a spectrum is for; decides how it is read between bins, and how RGB rendering integrates it.
     enum class Use {
-        Emission,     ///< bin means as they are: lines keep their energy
-        Reflectance,  ///< linear between bin centres; in RGB clamped to [0,1]
-        Index,        ///< refractive index: linear between bin centres
+        Emission,    ///< bin means as they are: lines keep their energy
+        Reflectance, ///< linear between bin centres; in RGB clamped to [0,1]
+        Index,       ///< refractive index: linear between bin centres
     };
 
     /// Adds a spectrum and returns its row.

@@ -23,14 +23,14 @@ struct RayTotals {
 struct RenderStatistics {
     double bvh_seconds = 0.0;
     double build_kernels_seconds = 0.0;
-    double render_seconds = 0.0;                             ///< passes and pilot, wall clock
-    std::array<double, step_names.size()> step_seconds{};   ///< on the device
+    double render_seconds = 0.0;                          ///< passes and pilot, wall clock
+    std::array<double, step_names.size()> step_seconds{}; ///< on the device
     std::uint64_t passes = 0;
     std::uint64_t photons_emitted = 0;
     std::uint64_t photons_stored = 0;
     std::vector<std::pair<std::string, std::uint64_t>> buffer_bytes;
     double bytes_per_pixel = 0.0;
-    double bytes_per_photon = 0.0;  ///< photon, its spectral fluxes and its sort keys
+    double bytes_per_photon = 0.0; ///< photon, its spectral fluxes and its sort keys
 };
 
 } // namespace tristim
