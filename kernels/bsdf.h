@@ -26,6 +26,13 @@ void keep_slot(PathWeight* weight, int slot) {
 }
 
 #if HAS_DIELECTRIC
+// Reflects or refracts about a normal on the incident side; u in [0, 1) decides.
+float3 reflect_or_refract(float3 direction, float3 n, float cos_i, float inverse_eta, float u, bool* refracted) {
+    float cos_t;
+    *refracted = u >= fresnel_dielectric(cos_i, inverse_eta, &cos_t);
+    return *refracted ? refract(direction, n, inverse_eta, cos_i, cos_t) : reflect(direction, n, cos_i);
+}
+
 // Reflects or refracts at a smooth dielectric, by chance in proportion to the Fresnel reflectance, so that neither changes
 // the weight; a dispersive one makes the path keep `slot` first. `radiance` says that the path runs from the camera:
 // radiance scales by (η_i/η_t)² at refraction, flux does not (Veach 1997, section 5.2). Returns the new direction.
@@ -36,14 +43,22 @@ float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* mate
         keep_slot(weight, slot);
 #endif
     const float inside_over_outside = spectrum_row(scene->pass_table, material->eta)[max(weight->slot, 0)];
-    float cos_i, cos_t;
+    float cos_i;
     const Facing facing = facing_normal(it, -direction, &cos_i);
     const float inverse_eta = facing.outside ? 1.0f / inside_over_outside : inside_over_outside;
-    if (u < fresnel_dielectric(cos_i, inverse_eta, &cos_t))
-        return reflect(direction, facing.normal, cos_i);
-    if (radiance)
+    bool refracted;
+    float3 scattered = reflect_or_refract(direction, facing.normal, cos_i, inverse_eta, u, &refracted);
+#if HAS_SHADING_NORMALS
+    // At grazing angles a shading normal may send the ray to the wrong side, where it would count as inside what it never
+    // entered: then the geometric normal takes its place.
+    if ((dot(scattered, it->normal) >= 0.0f) != (facing.outside != refracted)) {
+        const float3 n = facing.outside ? it->normal : -it->normal;
+        scattered = reflect_or_refract(direction, n, min(-dot(direction, n), 1.0f), inverse_eta, u, &refracted);
+    }
+#endif
+    if (radiance && refracted)
         weight->scale *= inverse_eta * inverse_eta;
-    return refract(direction, facing.normal, inverse_eta, cos_i, cos_t);
+    return scattered;
 }
 #endif
 
@@ -61,7 +76,12 @@ float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* mater
         for (int b = 0; b < BLOCKS; ++b)
             weight->spectrum.block[b] *= fresnel_conductor_lanes(cos_i, vloadv(b, eta), vloadv(b, k));
     }
-    return reflect(direction, facing.normal, cos_i);
+    const float3 scattered = reflect(direction, facing.normal, cos_i);
+#if HAS_SHADING_NORMALS
+    if ((dot(scattered, it->normal) >= 0.0f) != facing.outside)
+        return reflect(direction, it->normal, -dot(direction, it->normal));
+#endif
+    return scattered;
 }
 #endif
 

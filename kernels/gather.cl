@@ -136,7 +136,7 @@ kernel void gather(const global SceneConstants* constants, const global float* p
 #endif
     const int3 low = cell_of(search.point - point.radius, constants, search.scale);
     const int3 high = cell_of(search.point + point.radius, constants, search.scale);
-    Row rows[4];  // cells are larger than the sphere: at most two in y and z each
+    Row rows[9];  // two in y and z each; three where a coordinate rounds by more than a cell exceeds the sphere
     int count = 0;
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {

@@ -41,7 +41,7 @@ float fresnel_dielectric(float cos_i, float inverse_eta, float* cos_t) {
 DEFINE_FRESNEL_CONDUCTOR(fresnel_conductor, float)
 DEFINE_FRESNEL_CONDUCTOR(fresnel_conductor_lanes, floatv)
 
-// direction towards the surface, n on the side it comes from, at cosine cos_i to it.
+// direction towards the surface; cos_i its cosine to -n.
 float3 reflect(float3 direction, float3 n, float cos_i) { return direction + 2.0f * cos_i * n; }
 
 // Snell's law in vector form; arguments as in fresnel_dielectric, without total reflection. The result's length is that of

@@ -42,12 +42,16 @@ float4 random4(uint seed, uint pass, uint path, uint dimension) {
     return unit_float4(pcg4d((uint4)(path, dimension, pass, seed)));
 }
 
-uint8 reverse_bits(uint8 x) {
+// The low 24 bits mirrored at the binary point: bit 0 counts 1/2, bit 23 counts 2^-24. Mirrors the bits of each byte, then adds
+// up the bytes as floats, which is exact. (A mirror made of shifts alone becomes llvm.bitreverse, which Oclgrind lacks.)
+float8 mirrored_unit_float(uint8 x) {
     x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
     x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
     x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
-    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
-    return x >> 16 | x << 16;
+    const float8 high = convert_float8(as_int8(x & 255u));
+    const float8 middle = convert_float8(as_int8(x >> 8 & 255u));
+    const float8 low = convert_float8(as_int8(x >> 16 & 255u));
+    return high * 0x1p-8f + middle * 0x1p-16f + low * 0x1p-24f;
 }
 
 // Point number `index` of the Sobol' sequence in eight dimensions at once, scrambled by Owen's nested permutation in the
@@ -62,7 +66,7 @@ float8 sobol8(const global uint* table, uint index, uint8 scramble) {
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     x ^= x * 0x8d22f6e6u;
-    return convert_float8(reverse_bits(x) >> 8) * 0x1p-24f;
+    return mirrored_unit_float(x);
 }
 
 #endif

@@ -140,7 +140,7 @@ Data make_data(const Build& build) {
     }
     // The rounding of point ± radius, one unit of coordinates up to 1.5 scale, decides near a sphere's surface: no
     // photon there.
-    const double margin = 5e-7 * scale;
+    const double margin = 2.5e-7 * scale;
     const auto near_a_surface = [&](const Photon& photon) {
         return std::any_of(data.points.begin(), data.points.end(), [&](const VisiblePoint& point) {
             return std::abs(length(place(photon) - place(point)) - point.radius) < margin;
@@ -259,7 +259,7 @@ void check(const Build& build) {
             ASSERT_NEAR(results[pixel].s[c], expected.flux[c], tolerance) << at << ", channel " << c;
         }
     }
-    EXPECT_GT(found, 1000U) << "too few photons near the points to tell anything";
+    EXPECT_GT(found, 300U) << "too few photons near the points to tell anything";
 }
 
 TEST(KernelGather, FindsThePhotonsOfGreyScenes) {
@@ -269,6 +269,7 @@ TEST(KernelGather, FindsThePhotonsOfGreyScenes) {
     check({"grey, large scene", 3, 4, 1, false, false, 7, 4096.0});
     check({"grey, radius of 1/1000", 3, 4, 1, false, false, 7, 1.0, 1e-3});
     check({"grey, radius of 1/10000, a thousand roundings of a coordinate", 3, 4, 1, false, false, 7, 1.0, 1e-4});
+    check({"grey, radius of a few roundings of a coordinate", 3, 4, 1, false, false, 7, 1.0, 2e-6});
 }
 
 TEST(KernelGather, MatchesSlotsWhereGlassDisperses) {

@@ -41,6 +41,7 @@ kernel void direct(const global SceneLight* light, const global float4* points, 
     it.point = points[2 * i].xyz;
     it.normal = points[2 * i + 1].xyz;
     it.shading_normal = it.normal;
+    it.extent = 8.0f;
     it.material = 0;
     it.light = -1;
     const DirectLight d = sample_direct(light, &it, it.normal, u[i]);
@@ -97,6 +98,7 @@ SceneLight area_light(bool two_sided) {
     store(edge2, light.edge2_x, light.edge2_y, light.edge2_z);
     light.area = static_cast<float>(0.5 * length(cross(edge1, edge2)));
     light.two_sided = two_sided ? 1 : 0;
+    light.extent = 4.0F;
     return light;
 }
 

@@ -213,6 +213,33 @@ TEST(KernelSampling, SpotCosineFollowsTheFalloff) {
     }
 }
 
+/// The cosine's cumulative distribution, in closed form, gives the uniform number back.
+TEST(KernelSampling, SpotCosineInvertsItsDistribution) {
+    std::vector<cl_float2> u = random_squares(20000, 19);
+    for (const float edge : {0.0F, 0x1p-24F, 0.5F, 0x1.fffffep-1F})
+        u.push_back({{edge, 0.0F}});
+    for (const auto& [total, start] : cones) {
+        const auto cos_total = static_cast<float>(std::cos(total * pi / 180.0));
+        const auto cos_start = static_cast<float>(std::cos(start * pi / 180.0));
+        const std::vector<cl_float4> cosines = sample("spot_cosine", u, cos_total, cos_start);
+        const double inner = 1.0 - cos_start, outer = 0.5 * (double{cos_start} - cos_total);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const double cosine = cosines[i].s[0];
+            // From 1 down within the cone, then from the total width up in the falloff, whose end is the cone's begin.
+            double expected = 1.0 - cosine;
+            if (cosine < cos_start || (outer > 0.0 && cosine == cos_start && u[i].s[0] > 0.9F)) {
+                const double x = (cosine - cos_total) / (double{cos_start} - cos_total);
+                expected = inner + outer * (2.0 * x * x * x - x * x * x * x);
+            }
+            // The cosine's rounding, two units, weighs at most its own size; the products and the difference before it,
+            // eight of the whole.
+            ASSERT_NEAR(u[i].s[0] * (inner + outer), expected,
+                        4.0 * unit_roundoff + 8.0 * unit_roundoff * (inner + outer))
+                << "u = " << u[i].s[0] << ", cone of " << total << "°, falloff from " << start << "°";
+        }
+    }
+}
+
 TEST(KernelSampling, SpotFalloffAndItsIntegral) {
     Random random(16);
     std::vector<cl_float2> cosines, limits;

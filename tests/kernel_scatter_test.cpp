@@ -32,6 +32,7 @@ Interaction plane(float3 normal) {
     Interaction it;
     it.point = 0.0f;
     it.normal = it.shading_normal = normal;
+    it.extent = 1.0f;
     it.material = 0;
     it.light = -1;
     return it;

@@ -12,11 +12,13 @@ struct MethodCase {
     bool random;
 };
 
-RenderSet render_method(const Scene& scene, const MethodCase& method, int photons, double radius, int passes, int runs,
-                        std::uint32_t first_seed) {
-    RenderOptions options = small_render(method.method, 32, 32, photons, radius, 12);
+RenderSet render_method(const Scene& scene, RenderOptions options, const MethodCase& method, int passes, int runs) {
+    // Other seeds for each method, so that the sets are independent.
+    static std::uint32_t seed = 0;
+    seed += 1000;
+    options.method = parse_method(method.method);
     options.random_sequence = method.random;
-    return render_seeds(scene, options, passes, runs, first_seed);
+    return render_seeds(scene, options, passes, runs, seed);
 }
 
 /// Sharp features are compared over blocks, whose sums are closer to normal.
@@ -32,13 +34,12 @@ class Methods : public testing::TestWithParam<SceneCase> {};
 TEST_P(Methods, ConvergeToOneImage) {
     const std::string name = GetParam().folder;
     const Scene scene = load_scene(TRISTIM_SOURCE_DIR "/meshes/" + name + "/scene.pbrt");
-    const int passes = long_tests() ? 256 : 16;
-    const int runs = long_tests() ? 16 : 6;
-    const Demands demands{2e-5, long_tests() ? 0.01 : 0.05};
-    std::uint32_t seed = 1;
+    const int passes = long_tests() ? 256 : 12;
+    const int runs = long_tests() ? 16 : 5;
+    const Demands demands{2e-5, long_tests() ? 0.01 : 0.06};
+    const RenderOptions options = small_render("spectral:400", 32, 32, 8192, GetParam().radius, 12);
     const auto render = [&](const MethodCase& method) {
-        seed += 1000;
-        return block_means(render_method(scene, method, 16384, GetParam().radius, passes, runs, seed), block);
+        return block_means(render_method(scene, options, method, passes, runs), block);
     };
     const RenderSet spectral = render({"spectral:400", false});
     const RenderSet one = render({"tristimulus:1", false});
@@ -79,24 +80,50 @@ Difference difference(const RenderSet& a, const RenderSet& b) {
     return d;
 }
 
-/// The paper's point (its figure 3): rgb has no dispersion, so its caustic has another place and no colours. Its error is
-/// a bias that more passes do not mend, many times what noise explains, while tristimulus:20's is noise alone.
-TEST(RgbMethod, DoesNotConvergeToTheSpectralImageOfDispersion) {
-    const Scene scene = load_scene(TRISTIM_SOURCE_DIR "/meshes/dispersion/scene.pbrt");
-    const int passes = 24;
-    const int runs = 6;
-    const auto render = [&](const char* method, std::uint32_t seed) {
-        return block_means(render_method(scene, {method, false}, 32768, 0.06, passes, runs, seed), 2);
+struct ScreenCase {
+    const char* folder;
+    int width, height;
+    Region region;
+    double radius;
+    int passes;
+    double least_bias; ///< of rgb, in units of what noise explains
+};
+
+class RgbMethod : public testing::TestWithParam<ScreenCase> {};
+
+/// The paper's point (its figure 3): rgb shows dispersion as three displaced images, whatever the number of passes, instead
+/// of a spectrum. Its difference to the spectral image is several times what the standard errors explain, while
+/// tristimulus:20's is what they explain: the ratio's expectation is then 1, and with hundreds of pixels it cannot reach 2.
+TEST_P(RgbMethod, DoesNotConvergeToTheSpectralImage) {
+    const ScreenCase& screen = GetParam();
+    if (screen.passes > 100 && !long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1 for " << screen.passes << " passes of 65536 photons";
+    const Scene scene = load_scene(std::string(TRISTIM_SOURCE_DIR "/meshes/") + screen.folder + "/scene.pbrt");
+    RenderOptions options = small_render("spectral:400", screen.width, screen.height, 65536, screen.radius, 12);
+    options.region = screen.region;
+    const auto render = [&](const char* method) {
+        return render_method(scene, options, {method, false}, screen.passes, 4);
     };
-    const RenderSet spectral = render("spectral:400", 1);
-    const Difference twenty = difference(render("tristimulus:20", 1001), spectral);
-    const Difference rgb = difference(render("rgb", 2001), spectral);
-    RecordProperty("rgb", std::to_string(rgb.rmse) + " " + std::to_string(rgb.noise));
-    RecordProperty("twenty", std::to_string(twenty.rmse) + " " + std::to_string(twenty.noise));
-    EXPECT_LT(twenty.rmse, 2.0 * twenty.noise);
-    EXPECT_GT(rgb.rmse, 4.0 * rgb.noise) << "rgb: RMSE " << rgb.rmse << ", noise " << rgb.noise;
-    EXPECT_GT(rgb.rmse, 3.0 * twenty.rmse) << "tristimulus:20: RMSE " << twenty.rmse << ", noise " << twenty.noise;
+    const RenderSet spectral = render("spectral:400");
+    const RenderSet twenty = render("tristimulus:20");
+    const RenderSet rgb = render("rgb");
+    const Difference of_twenty = difference(twenty, spectral);
+    const Difference of_rgb = difference(rgb, spectral);
+    const std::string found =
+        fmt::format("RMSE to spectral:400 of rgb {:.4g} (noise explains {:.4g}), of tristimulus:20 {:.4g} ({:.4g})",
+                    of_rgb.rmse, of_rgb.noise, of_twenty.rmse, of_twenty.noise);
+    RecordProperty("found", found);
+    EXPECT_LT(of_twenty.rmse, 2.0 * of_twenty.noise) << found;
+    EXPECT_GT(of_rgb.rmse, screen.least_bias * of_rgb.noise) << found;
+    if (HasFailure())
+        ADD_FAILURE() << write_failure(std::string("rgb-") + screen.folder, mean_image(rgb), mean_image(spectral));
 }
+
+// The prism's screen, and a part of the dispersion scene's wall that single wavelengths reach.
+INSTANTIATE_TEST_SUITE_P(Screens, RgbMethod,
+                         testing::Values(ScreenCase{"prism", 96, 64, {0, 16, 48, 32}, 0.04, 8, 4.0},
+                                         ScreenCase{"dispersion", 128, 128, {96, 0, 32, 32}, 0.06, 512, 2.0}),
+                         [](const testing::TestParamInfo<ScreenCase>& screen) { return std::string(screen.param.folder); });
 
 } // namespace
 } // namespace tristim::test

@@ -83,6 +83,7 @@ const std::vector<Field>& fields() {
         FIELD(SceneLight, cos_falloff_start),
         FIELD(SceneLight, area),
         FIELD(SceneLight, two_sided),
+        FIELD(SceneLight, extent),
         FIELD(VisiblePoint, x),
         FIELD(VisiblePoint, normal),
         FIELD(VisiblePoint, slot),

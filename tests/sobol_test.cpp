@@ -3,6 +3,9 @@
 #include "kernel_harness.h"
 #include "render/sobol.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +19,10 @@ const char* const source = R"(
 kernel void points(const global uint* table, uint first, const global uint* scrambles, global float* outputs) {
     const uint i = (uint)get_global_id(0);
     vstore8(sobol8(table, first + i, vload8(0, scrambles)), i, outputs);
+}
+kernel void points_at(const global uint* table, const global uint* indices, const global uint* scrambles, global float* outputs) {
+    const uint i = (uint)get_global_id(0);
+    vstore8(sobol8(table, indices[i], vload8(0, scrambles)), i, outputs);
 }
 // One point under many scramblings, as the passes take them.
 kernel void scramblings(const global uint* table, uint index, global float* outputs) {
@@ -111,6 +118,36 @@ class ScrambledSobol : public ::testing::Test {
     const ::cl::Program program_ = build_test_program(source);
     const Buffer<std::uint32_t> table_ = upload(sobol_table());
 };
+
+/// Nested scrambling (Owen 1995) sends two numbers that agree in their first n binary digits to two that agree in as
+/// many, and to no more.
+TEST_F(ScrambledSobol, KeepsHowManyDigitsTwoPointsShare) {
+    Random random(6);
+    std::vector<std::uint32_t> indices{0U, 1U, 0xffffffffU, 0xfffffffeU, 0x80000000U, 0U};
+    while (indices.size() < 4000)
+        indices.push_back(random.bits());
+    const Buffer<std::array<float, 8>> output = make_buffer<std::array<float, 8>>(indices.size());
+    run(program_, "points_at", indices.size(), table_, upload(indices), upload(random_scrambles(random)), output);
+    const std::vector<std::array<float, 8>> scrambled = output.read(test_device());
+    constexpr int digits = 24; // of a float below 1
+    const auto shared = [=](std::uint32_t a, std::uint32_t b) { return std::min(std::countl_zero(a ^ b), digits); };
+    for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
+        const std::vector<std::uint32_t> v = sobol_direction_numbers(dimension);
+        const auto d = static_cast<std::size_t>(dimension);
+        for (std::size_t i = 0; i + 1 < indices.size(); i += 2) {
+            std::uint32_t difference = 0; // of the two points, in binary
+            for (std::size_t bit = 0; bit < 32; ++bit) {
+                if (((indices[i] ^ indices[i + 1]) >> bit & 1U) != 0)
+                    difference ^= v[bit];
+            }
+            const auto binary = [&](std::size_t point) {
+                return static_cast<std::uint32_t>(scrambled[point][d] * 0x1p24F) << 8;
+            };
+            ASSERT_EQ(shared(binary(i), binary(i + 1)), shared(difference, 0U))
+                << "dimension " << dimension << ", points " << indices[i] << " and " << indices[i + 1];
+        }
+    }
+}
 
 /// Every aligned run of 2^m points has one in each of the 2^m intervals, in every dimension and under every scrambling.
 TEST_F(ScrambledSobol, IsStratifiedInEveryDimension) {
