@@ -30,7 +30,10 @@ void keep_slot(PathWeight* weight, int slot) {
 float3 reflect_or_refract(float3 direction, float3 n, float cos_i, float inverse_eta, float u, bool* refracted) {
     float cos_t;
     *refracted = u >= fresnel_dielectric(cos_i, inverse_eta, &cos_t);
-    return *refracted ? refract(direction, n, inverse_eta, cos_i, cos_t) : reflect(direction, n, cos_i);
+    // Both are cheaper than a branch that no processor can foresee.
+    const float3 reflection = reflect(direction, n, cos_i);
+    const float3 refraction = refract(direction, n, inverse_eta, cos_i, cos_t);
+    return *refracted ? refraction : reflection;
 }
 
 // Reflects or refracts at a smooth dielectric, by chance in proportion to the Fresnel reflectance, so that neither changes
@@ -56,8 +59,8 @@ float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* mate
         scattered = reflect_or_refract(direction, n, min(-dot(direction, n), 1.0f), inverse_eta, u, &refracted);
     }
 #endif
-    if (radiance && refracted)
-        weight->scale *= inverse_eta * inverse_eta;
+    if (radiance)
+        weight->scale *= refracted ? inverse_eta * inverse_eta : 1.0f;
     return scattered;
 }
 #endif

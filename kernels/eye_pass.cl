@@ -6,10 +6,11 @@
 
 // Dimensions of a pixel's low-discrepancy sequence over the passes.
 #define EYE_FILM s01
-#define EYE_LIGHT s2
-#define EYE_LIGHT_POINT s34
-#define EYE_LENS s56
-#define EYE_FIRST_SCATTER s7
+#define EYE_FIRST_SCATTER s2
+#define EYE_LIGHT s3
+#define EYE_LIGHT_POINT s45
+#define EYE_LENS s67
+#define EYE_USES_UPPER_DIMENSIONS (HAS_AREA_LIGHT || HAS_INFINITE_LIGHT || HAS_THIN_LENS)
 
 void camera_ray(const global SceneConstants* c, float2 raster, float2 u_lens, float3* origin, float3* direction) {
     *origin = (float3)(c->camera_x, c->camera_y, c->camera_z);
@@ -64,8 +65,10 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
     const uint y = (uint)constants->region_y + pixel / (uint)constants->region_width;
     const uint image_pixel = y * (uint)constants->image_width + x;
 
-    const uint8 scramble = (uint8)(pcg4d((uint4)(image_pixel, STREAM_EYE, 0u, seed)),
-                                   pcg4d((uint4)(image_pixel, STREAM_EYE, 1u, seed)));
+    uint8 scramble = (uint8)(pcg4d((uint4)(image_pixel, STREAM_EYE, 0u, seed)), (uint4)(0u));
+#if EYE_USES_UPPER_DIMENSIONS
+    scramble.hi = pcg4d((uint4)(image_pixel, STREAM_EYE, 1u, seed));
+#endif
     const float8 u = sobol8(sobol_table, pass, scramble);
     // Over W passes a pixel visits every slot once; neighbours begin at different ones.
     const int slot = (int)(((scramble.s0 >> 8) + pass) % (uint)W);
@@ -118,7 +121,7 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
 #if HAS_DIELECTRIC
         if (material->kind == MATERIAL_DIELECTRIC) {
             const float v = depth == 0 ? u.EYE_FIRST_SCATTER
-                                       : random4(seed, pass, image_pixel, STREAM_EYE + (uint)depth).x;
+                                       : random_step(scramble.s2 + pass * 0x632be5abu, (uint)depth);
             direction = scatter_dielectric(&scene, material, &it, direction, v, slot, true, &weight);
         }
 #endif

@@ -10,16 +10,13 @@
 float fresnel_dielectric(float cos_i, float inverse_eta, float* cos_t) {
     const float sin2_i = (1.0f - cos_i) * (1.0f + cos_i);
     const float cos2_t = 1.0f - sin2_i * inverse_eta * inverse_eta;
-    if (cos2_t <= 0.0f) {
-        *cos_t = 0.0f;
-        return 1.0f;
-    }
-    *cos_t = sqrt(cos2_t);
+    *cos_t = sqrt(max(cos2_t, 0.0f));
     // s = a/b and p = c/d: (s² + p²)/2 by one division.
     const float a = inverse_eta * cos_i - *cos_t, b = inverse_eta * cos_i + *cos_t;
     const float c = cos_i - inverse_eta * *cos_t, d = cos_i + inverse_eta * *cos_t;
     const float ad = a * d, cb = c * b, bd = b * d;
-    return 0.5f * (ad * ad + cb * cb) / (bd * bd);
+    const float reflectance = 0.5f * (ad * ad + cb * cb) / (bd * bd);
+    return cos2_t <= 0.0f ? 1.0f : reflectance;
 }
 
 // Fresnel reflectance of a conductor with index eta + ik for unpolarised light arriving from vacuum (Born & Wolf 1999,

@@ -72,10 +72,12 @@ kernel void sort_scatter(const global uint2* pairs, const global uint* summary, 
         sorted[positions[pairs[i].x >> shift & (DIGITS - 1u)]++] = pairs[i];
 }
 
-// One work-item per pair and one more: bucket_begin[b] is where bucket b begins among the sorted pairs, for b from 0 to
+// At least one work-item per pair and one more: bucket_begin[b] is where bucket b begins among the sorted pairs, for b from 0 to
 // BUCKET_COUNT.
 kernel void bucket_ranges(const global uint2* pairs, const global uint* summary, global uint* bucket_begin) {
     const uint i = (uint)get_global_id(0), n = summary[0];
+    if (i > n)
+        return;
     const uint first = i == 0 ? 0u : pairs[i - 1].x + 1u;
     const uint last = i == n ? BUCKET_COUNT : pairs[i].x;
     for (uint b = first; b <= last; ++b)

@@ -73,6 +73,7 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path, float8 u,
     for (int b = 0; b < BLOCKS; ++b)
         weight.spectrum.block[b] = vloadv(b, spectrum_row(scene->pass_table, light->spectrum));
 
+    const uint4 key = pcg4d((uint4)(path, STREAM_PHOTON, pass, seed));
     bool bounced = false;
     for (int depth = 0; depth < MAX_DEPTH; ++depth) {
         const Hit hit = closest_hit(scene, origin, direction);
@@ -80,22 +81,23 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path, float8 u,
             return;
         const Interaction it = make_interaction(scene, &hit);
         const global SurfaceMaterial* material = scene->materials + it.material;
-        const float4 v = random4(seed, pass, path, STREAM_PHOTON + (uint)depth);
+        const float v = random_step(key.x, (uint)depth);
         if (material->kind == MATERIAL_DIFFUSE) {
             float cosine;
             const float3 n = facing_normal(&it, -direction, &cosine).normal;
             if (depth > 0 || DIRECT_PHOTONS)
                 store_photon(scene, store, &it, n, material->reflectance, &weight);
-            if (!reflect_diffusely(scene, material->reflectance, v.x, &weight))
+            if (!reflect_diffusely(scene, material->reflectance, v, &weight))
                 return;
-            const float2 u_bounce = bounced ? v.yz : u.PHOTON_FIRST_BOUNCE;
+            const float2 u_bounce = bounced ? (float2)(random_step(key.y, (uint)depth), random_step(key.z, (uint)depth))
+                                            : u.PHOTON_FIRST_BOUNCE;
             bounced = true;
             const Frame frame = make_frame(n);
             direction = frame_to_world(&frame, sample_cosine_hemisphere(u_bounce));
         }
 #if HAS_DIELECTRIC
         if (material->kind == MATERIAL_DIELECTRIC)
-            direction = scatter_dielectric(scene, material, &it, direction, v.x, slot, false, &weight);
+            direction = scatter_dielectric(scene, material, &it, direction, v, slot, false, &weight);
 #endif
 #if HAS_CONDUCTOR
         if (material->kind == MATERIAL_CONDUCTOR)

@@ -42,6 +42,17 @@ float4 random4(uint seed, uint pass, uint path, uint dimension) {
     return unit_float4(pcg4d((uint4)(path, dimension, pass, seed)));
 }
 
+// One uniform number in [0, 1) for each step of a path, from a key of the path. Its hash is Wellons 2018's lowbias32 ("Prospecting
+// for Hash Functions"), a third of the work of pcg4d, which makes the keys.
+float random_step(uint key, uint step) {
+    uint x = key + step * 0x9e3779b9u;  // 2^32 / golden ratio
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return unit_float(x ^ x >> 16);
+}
+
 // The low 24 bits mirrored at the binary point: bit 0 counts 1/2, bit 23 counts 2^-24. Mirrors the bits of each byte, then adds
 // up the bytes as floats, which is exact. (A mirror made of shifts alone becomes llvm.bitreverse, which Oclgrind lacks.)
 float8 mirrored_unit_float(uint8 x) {

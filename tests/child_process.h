@@ -29,8 +29,8 @@ struct ChildResult {
 
 /// What else a child gets.
 struct ChildLimits {
-    std::optional<rlim_t> file_size;                       ///< bytes; beyond them a write fails with EFBIG
-    std::optional<rlim_t> memory;                          ///< bytes of address space
+    std::optional<rlim_t> file_size;                          ///< bytes; beyond them a write fails with EFBIG
+    std::optional<rlim_t> memory;                             ///< bytes of address space
     std::optional<std::chrono::milliseconds> interrupt_after; ///< SIGINT, counted from its first line on stderr
 };
 

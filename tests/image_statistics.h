@@ -24,8 +24,8 @@ struct TestImage {
     std::vector<Xyz> xyz;
 };
 
-/// Renders of one scene that differ in the seed alone. A render's passes use low-discrepancy sequences, so only whole renders
-/// are independent samples of the image.
+/// Renders of one scene that differ in the seed alone. A render's passes use low-discrepancy sequences, so only whole
+/// renders are independent samples of the image.
 struct RenderSet {
     std::vector<TestImage> images;
 };
@@ -66,7 +66,8 @@ inline TestImage block_means(const TestImage& image, int block) {
     return result;
 }
 
-/// I_x(a, b), the regularised incomplete beta function, by its continued fraction (DLMF 8.17.22) evaluated from its tail.
+/// I_x(a, b), the regularised incomplete beta function, by its continued fraction (DLMF 8.17.22) evaluated from its
+/// tail.
 inline double regularised_beta(double x, double a, double b) {
     if (x <= 0.0 || x >= 1.0)
         return x <= 0.0 ? 0.0 : 1.0;
@@ -108,8 +109,8 @@ inline Estimate estimate(const std::vector<double>& samples) {
 /// How many false alarms a family of tests may have: one in ten thousand.
 inline constexpr double family_error = 1e-4;
 
-/// Two samples' means (Welch's t-test), or one sample's and an exact value (b without error). `tolerance` is the difference
-/// that rounding explains. Empty `samples_b` counts: 0.
+/// Two samples' means (Welch's t-test), or one sample's and an exact value (b without error). `tolerance` is the
+/// difference that rounding explains. Empty `samples_b` counts: 0.
 struct Comparison {
     Estimate a, b;
     double t = 0.0;
@@ -220,16 +221,17 @@ class ImageTest {
         if (!(worst_.p >= pixel_level)) {
             failed = true;
             ADD_FAILURE() << name_ << ": pixel (" << worst_pixel_ % static_cast<std::size_t>(width_) << ", "
-                          << worst_pixel_ / static_cast<std::size_t>(width_) << ") " << "XYZ"[worst_channel_] << " "
-                          << describe(worst_) << ", Šidák level " << pixel_level << " for " << pixel_tests_ << " tests";
+                          << worst_pixel_ / static_cast<std::size_t>(width_) << ") "
+                          << "XYZ"[worst_channel_] << " " << describe(worst_) << ", Šidák level " << pixel_level
+                          << " for " << pixel_tests_ << " tests";
         }
         const double mean_level = 1.0 - std::pow(1.0 - family_error, 1.0 / 3.0);
         for (std::size_t c = 0; c < 3; ++c) {
             if (means_[c].p >= mean_level)
                 continue;
             failed = true;
-            ADD_FAILURE() << name_ << ": image mean of " << "XYZ"[c] << " " << describe(means_[c]) << ", Šidák level "
-                          << mean_level;
+            ADD_FAILURE() << name_ << ": image mean of "
+                          << "XYZ"[c] << " " << describe(means_[c]) << ", Šidák level " << mean_level;
         }
         if (failed)
             ADD_FAILURE() << name_ << ": " << write_failure(name_, image, reference);
@@ -252,7 +254,7 @@ class ImageTest {
 
 /// What a comparison with an exact image grants and demands.
 struct Demands {
-    double rounding = 2e-5; ///< relative error of float arithmetic in a path of some dozens of operations (eps 6e-8)
+    double rounding = 2e-5;   ///< relative error of float arithmetic in a path of some dozens of operations (eps 6e-8)
     double resolution = 0.01; ///< the image mean's standard error must be below this fraction of it: errors of some
                               ///< multiples of it are sure to be seen
 };
@@ -269,14 +271,15 @@ inline void expect_exact(const std::string& name, const RenderSet& set, const Te
         for (std::size_t i = 0; i < exact.xyz.size(); ++i) {
             const double value = exact.xyz[i][c];
             exact_mean += value / static_cast<double>(exact.xyz.size());
-            test.add_pixel(i, c,
-                           compare_estimates(estimate(samples_of(set, i, c)), runs, {value, 0.0}, 0,
-                                             demands.rounding * value));
+            test.add_pixel(
+                i, c,
+                compare_estimates(estimate(samples_of(set, i, c)), runs, {value, 0.0}, 0, demands.rounding * value));
         }
         const Estimate whole = estimate(mean_samples(set, c));
         test.add_mean(c, compare_estimates(whole, runs, {exact_mean, 0.0}, 0, demands.rounding * exact_mean));
         EXPECT_LT(std::sqrt(whole.squared_error), demands.resolution * exact_mean)
-            << name << ": too noisy to show errors of " << "XYZ"[c];
+            << name << ": too noisy to show errors of "
+            << "XYZ"[c];
     }
     test.judge(mean, exact);
 }
@@ -290,7 +293,8 @@ inline void expect_same(const std::string& name, const RenderSet& a, const Rende
     const auto compare = [&](const std::vector<double>& samples_a, const std::vector<double>& samples_b) {
         const Estimate of_a = estimate(samples_a);
         const Estimate of_b = estimate(samples_b);
-        return compare_estimates(of_a, samples_a.size(), of_b, samples_b.size(), demands.rounding * std::abs(of_b.mean));
+        return compare_estimates(of_a, samples_a.size(), of_b, samples_b.size(),
+                                 demands.rounding * std::abs(of_b.mean));
     };
     for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < mean_a.xyz.size(); ++i)
@@ -298,7 +302,8 @@ inline void expect_same(const std::string& name, const RenderSet& a, const Rende
         const Comparison whole = compare(mean_samples(a, c), mean_samples(b, c));
         test.add_mean(c, whole);
         EXPECT_LT(std::sqrt(whole.a.squared_error + whole.b.squared_error), demands.resolution * whole.b.mean)
-            << name << ": too noisy to show differences of " << "XYZ"[c];
+            << name << ": too noisy to show differences of "
+            << "XYZ"[c];
     }
     test.judge(mean_a, mean_b);
 }

@@ -55,7 +55,7 @@ void check(const Case& c) {
         photon.y = static_cast<float>(random(-c.extent, c.extent));
         photon.z = static_cast<float>(random(-c.extent, c.extent));
     }
-    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items) {
+    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t /*group*/) {
         device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items));
     };
     PhotonSorter sorter(device, {{"RADIX_BITS", std::to_string(c.radix_bits)}}, {}, c.radix_bits);
@@ -81,7 +81,7 @@ void check(const Case& c) {
     const Buffer<SceneConstants> constants = upload(std::vector{SceneConstants{}});
     const Buffer<Photon> photon_buffer = upload(photons);
     const Buffer<std::uint32_t> radius = upload(std::vector{std::bit_cast<std::uint32_t>(c.largest_radius)});
-    sorter.sort(constants, photon_buffer, radius, count, enqueue);
+    sorter.sort(constants, photon_buffer, radius, enqueue);
     const std::vector<cl_uint2> pairs = sorter.pairs().read(device, count);
     const std::vector<std::uint32_t> begin = sorter.bucket_begin().read(device);
 

@@ -9,7 +9,9 @@
 namespace tristim::test {
 namespace {
 
-Scene dispersion_scene() { return load_scene(TRISTIM_SOURCE_DIR "/meshes/dispersion/scene.pbrt"); }
+Scene dispersion_scene() {
+    return load_scene(TRISTIM_SOURCE_DIR "/meshes/dispersion/scene.pbrt");
+}
 
 RenderOptions dispersion_options() {
     RenderOptions options = small_render("tristimulus:2", 24, 20, 4096, 0.1, 16);
@@ -101,10 +103,10 @@ TEST(Determinism, ThreadCountDoesNotMatter) {
     const SceneFolder folder;
     const auto render = [&folder](const std::string& threads) {
         const std::string path = folder.path(threads + ".exr");
-        const ChildResult result = run_tristim(
-            {"render", TRISTIM_SOURCE_DIR "/meshes/dispersion/scene.pbrt", "--resolution", "24x20", "--passes", "4",
-             "--photons", "4096", "--quiet", "--space", "xyz", "--outfile", path},
-            {{"POCL_MAX_PTHREAD_COUNT", threads}});
+        const ChildResult result =
+            run_tristim({"render", TRISTIM_SOURCE_DIR "/meshes/dispersion/scene.pbrt", "--resolution", "24x20",
+                         "--passes", "4", "--photons", "4096", "--quiet", "--space", "xyz", "--outfile", path},
+                        {{"POCL_MAX_PTHREAD_COUNT", threads}});
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
         return read_exr(path).xyz;
     };

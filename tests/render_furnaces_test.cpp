@@ -1,4 +1,5 @@
-// Scenes whose radiance is the same everywhere, and reflection of a uniform environment: exact radiance by energy balance.
+// Scenes whose radiance is the same everywhere, and reflection of a uniform environment: exact radiance by energy
+// balance.
 #include "image_statistics.h"
 
 #include <cmath>
@@ -49,8 +50,8 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 class DiffuseFurnace : public testing::TestWithParam<Case> {};
 
 /// A closed box whose walls all emit 0.5 and reflect half of what they receive: L = 0.5 + 0.5 L = 1 everywhere, as
-/// 0.5^64 is nothing. The camera looks at the middle of a wall, since a search disc that reaches over an edge would miss
-/// some of its photons.
+/// 0.5^64 is nothing. The camera looks at the middle of a wall, since a search disc that reaches over an edge would
+/// miss some of its photons.
 TEST_P(DiffuseFurnace, HasRadianceOne) {
     const Spectrum white = Spectrum::named("stdillum-D65");
     Scene scene;
@@ -79,8 +80,8 @@ struct GlassCase {
 
 class GlassFurnace : public testing::TestWithParam<GlassCase> {};
 
-/// Glass absorbs nothing: in uniform radiance it cannot be seen. Reflection and refraction are chosen by chance without a
-/// change of weight, and 1/η² on the way in is η² on the way out, so every path must return the environment.
+/// Glass absorbs nothing: in uniform radiance it cannot be seen. Reflection and refraction are chosen by chance without
+/// a change of weight, and 1/η² on the way in is η² on the way out, so every path must return the environment.
 TEST_P(GlassFurnace, IsInvisible) {
     Scene scene;
     scene.path = "glass";
@@ -132,7 +133,8 @@ TEST(ConductorMirror, ReflectsTheEnvironmentByFresnel) {
     TestImage exact{width, height, {}};
     for (int pixel = 0; pixel < width * height; ++pixel) {
         exact.xyz.push_back(integrate_xyz(light, [&](double lambda) {
-            return 1.5 * pixel_mean(scene.camera, width, height, pixel % width, pixel / width, [&](const CameraRay& ray) {
+            return 1.5 *
+                   pixel_mean(scene.camera, width, height, pixel % width, pixel / width, [&](const CameraRay& ray) {
                        return fresnel(-ray.direction.z, {eta(lambda), k(lambda)});
                    });
         }));

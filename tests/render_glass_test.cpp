@@ -1,5 +1,5 @@
-// Light through glass, seen through glass: every combination of visible points and photons that carry all wavelengths of a
-// pass or one alone.
+// Light through glass, seen through glass: every combination of visible points and photons that carry all wavelengths
+// of a pass or one alone.
 #include "image_statistics.h"
 
 #include <cmath>
@@ -26,8 +26,8 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 }
 
 /// A slab whose index is 1 but for some 10⁻⁶ that depend on the wavelength: paths keep one wavelength there, and
-/// nothing else happens. It hangs over a part of the floor, between two lights. The camera sees the floor past its edge,
-/// through it and beside it, where light from above comes through the slab and light from below does not.
+/// nothing else happens. It hangs over a part of the floor, between two lights. The camera sees the floor past its
+/// edge, through it and beside it, where light from above comes through the slab and light from below does not.
 class GhostGlass : public testing::TestWithParam<Case> {};
 
 TEST_P(GhostGlass, ShowsTheFloorAsIfItWereNotThere) {

@@ -1,5 +1,5 @@
-// The methods' images of the scenes that come with the project: those that sample wavelengths converge to one image; rgb
-// does not where colours come from dispersion.
+// The methods' images of the scenes that come with the project: those that sample wavelengths converge to one image;
+// rgb does not where colours come from dispersion.
 #include "image_statistics.h"
 
 #include <cmath>
@@ -53,9 +53,9 @@ TEST_P(Methods, ConvergeToOneImage) {
     expect_same(name + "-tristimulus:20-random-spectral", twenty_random, spectral, demands);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Methods,
-                         testing::Values(SceneCase{"dispersion", 0.12}, SceneCase{"prism", 0.12}, SceneCase{"box", 0.12}),
-                         [](const testing::TestParamInfo<SceneCase>& scene) { return std::string(scene.param.folder); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Methods, testing::Values(SceneCase{"dispersion", 0.12}, SceneCase{"prism", 0.12}, SceneCase{"box", 0.12}),
+    [](const testing::TestParamInfo<SceneCase>& scene) { return std::string(scene.param.folder); });
 
 /// Root of the mean squared difference of two images' means, and what of it the standard errors explain.
 struct Difference {
@@ -91,9 +91,10 @@ struct ScreenCase {
 
 class RgbMethod : public testing::TestWithParam<ScreenCase> {};
 
-/// The paper's point (its figure 3): rgb shows dispersion as three displaced images, whatever the number of passes, instead
-/// of a spectrum. Its difference to the spectral image is several times what the standard errors explain, while
-/// tristimulus:20's is what they explain: the ratio's expectation is then 1, and with hundreds of pixels it cannot reach 2.
+/// The paper's point (its figure 3): rgb shows dispersion as three displaced images, whatever the number of passes,
+/// instead of a spectrum. Its difference to the spectral image is several times what the standard errors explain, while
+/// tristimulus:20's is what they explain: the ratio's expectation is then 1, and with hundreds of pixels it cannot
+/// reach 2.
 TEST_P(RgbMethod, DoesNotConvergeToTheSpectralImage) {
     const ScreenCase& screen = GetParam();
     if (screen.passes > 100 && !long_tests())
@@ -123,7 +124,9 @@ TEST_P(RgbMethod, DoesNotConvergeToTheSpectralImage) {
 INSTANTIATE_TEST_SUITE_P(Screens, RgbMethod,
                          testing::Values(ScreenCase{"prism", 96, 64, {0, 16, 48, 32}, 0.04, 8, 4.0},
                                          ScreenCase{"dispersion", 128, 128, {96, 0, 32, 32}, 0.06, 512, 2.0}),
-                         [](const testing::TestParamInfo<ScreenCase>& screen) { return std::string(screen.param.folder); });
+                         [](const testing::TestParamInfo<ScreenCase>& screen) {
+                             return std::string(screen.param.folder);
+                         });
 
 } // namespace
 } // namespace tristim::test

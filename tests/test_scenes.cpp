@@ -11,7 +11,9 @@
 namespace tristim::test {
 namespace {
 
-V3f to_float(const V3d& v) { return V3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)); }
+V3f to_float(const V3d& v) {
+    return V3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
 
 int add_material(Scene& scene, const Material& material) {
     scene.materials.push_back(material);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <strings.h>
 
 namespace tristim {
 namespace {
@@ -33,14 +34,14 @@ struct RenderCommand {
 };
 
 bool is_exr(const std::string& path) {
-    return std::filesystem::path(path).extension() == ".exr";
+    return ::strcasecmp(std::filesystem::path(path).extension().c_str(), ".exr") == 0;
 }
 
 Progress::Limits limits(const RenderCommand& command, const Scene& scene) {
-    if (command.passes && *command.passes == 0)
-        fail("--passes must be at least 1");
     if (command.seconds && !(*command.seconds > 0.0 && std::isfinite(*command.seconds)))
         fail("--time must be a positive number of seconds");
+    if (!std::isfinite(command.exposure))
+        fail("--exposure must be a finite number of stops");
     if (!command.passes && !command.seconds)
         return {scene.settings.passes ? static_cast<std::uint64_t>(*scene.settings.passes) : default_passes, {}};
     return {command.passes, command.seconds};
@@ -138,7 +139,8 @@ void add_render_command(CLI::App& app) {
         ->type_name("FILE.exr|FILE.png")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]");
+    sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]")
+        ->check(CLI::PositiveNumber);
     sub->add_option("--time", command->seconds, "Seconds to render; with --passes, the first reached ends the render");
     sub->add_option("--space", command->space, "Channels of EXR files: linear sRGB (R, G, B) or xyz (X, Y, Z)")
         ->check(CLI::IsMember({"srgb", "xyz"}))

@@ -1,12 +1,14 @@
 #include "render/photon_sorter.h"
 
+#include "render/work_groups.h"
+
 namespace tristim {
 namespace {
 
-/// Pieces that the pairs are sorted in, one work-item each. The result does not depend on it.
+/// Pieces that the pairs are sorted in, one work-item each, a multiple of a group. The result does not depend on it.
 std::uint32_t sort_blocks(const DeviceInfo& info) {
-    constexpr std::uint32_t blocks_per_unit = 4; // evens out threads that are held up
-    return blocks_per_unit * info.compute_units;
+    constexpr std::uint32_t groups_per_unit = 2; // evens out threads that are held up
+    return groups_per_unit * item_group * info.compute_units;
 }
 
 } // namespace
@@ -39,7 +41,7 @@ void PhotonSorter::count(const Buffer<std::uint32_t>& item_counts, const Enqueue
     offsets_.setArg(2, capacity_);
     offsets_.setArg(3, item_offsets_.cl());
     offsets_.setArg(4, summary_.cl());
-    enqueue(offsets_, 1);
+    enqueue(offsets_, 1, 1);
 }
 
 PhotonSorter::Summary PhotonSorter::summary(const Device& device) const {
@@ -48,15 +50,14 @@ PhotonSorter::Summary PhotonSorter::summary(const Device& device) const {
 }
 
 void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Photon>& photons,
-                        const Buffer<std::uint32_t>& largest_radius, std::uint32_t photon_count,
-                        const Enqueue& enqueue) {
+                        const Buffer<std::uint32_t>& largest_radius, const Enqueue& enqueue) {
     keys_.setArg(0, constants.cl());
     keys_.setArg(1, photons.cl());
     keys_.setArg(2, capacity_);
     keys_.setArg(3, item_offsets_.cl());
     keys_.setArg(4, largest_radius.cl());
     keys_.setArg(5, pairs_.cl());
-    enqueue(keys_, items_);
+    enqueue(keys_, items_, item_group);
     for (const int shift : {0, radix_bits_}) {
         const Buffer<cl_uint2>& from = shift == 0 ? pairs_ : other_pairs_;
         const Buffer<cl_uint2>& to = shift == 0 ? other_pairs_ : pairs_;
@@ -64,21 +65,23 @@ void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Ph
         count_.setArg(1, summary_.cl());
         count_.setArg(2, static_cast<cl_uint>(shift));
         count_.setArg(3, histogram_.cl());
-        enqueue(count_, blocks_);
+        enqueue(count_, blocks_, item_group);
         scan_.setArg(0, blocks_);
         scan_.setArg(1, histogram_.cl());
-        enqueue(scan_, 1);
+        enqueue(scan_, 1, 1);
         scatter_.setArg(0, from.cl());
         scatter_.setArg(1, summary_.cl());
         scatter_.setArg(2, static_cast<cl_uint>(shift));
         scatter_.setArg(3, histogram_.cl());
         scatter_.setArg(4, to.cl());
-        enqueue(scatter_, blocks_);
+        enqueue(scatter_, blocks_, item_group);
     }
     ranges_.setArg(0, pairs_.cl());
     ranges_.setArg(1, summary_.cl());
     ranges_.setArg(2, bucket_begin_.cl());
-    enqueue(ranges_, std::size_t{photon_count} + 1);
+    // The room for photons rather than their number, which changes with each pass: PoCL would compile the kernel anew.
+    const std::size_t range_items = pairs_.size() + 1;
+    enqueue(ranges_, (range_items + pixel_group - 1) / pixel_group * pixel_group, pixel_group);
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> PhotonSorter::sizes() const {

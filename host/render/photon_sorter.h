@@ -23,7 +23,8 @@ class PhotonSorter {
     /// Room for `items` work-items of photon_pass with `capacity` photons each.
     void allocate(const Device& device, std::uint32_t items, std::uint32_t capacity);
 
-    using Enqueue = std::function<void(const ::cl::Kernel&, std::size_t items)>;
+    /// Runs a kernel with so many work-items in groups of so many.
+    using Enqueue = std::function<void(const ::cl::Kernel&, std::size_t items, std::size_t group)>;
 
     /// After photon_pass: counts its photons (item_counts), on the device.
     void count(const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue);
@@ -35,9 +36,9 @@ class PhotonSorter {
     /// What count() found; waits for the device.
     Summary summary(const Device& device) const;
 
-    /// Sorts `photons` of them by cells of twice the largest radius.
+    /// Sorts them by cells of about twice the largest radius.
     void sort(const Buffer<SceneConstants>& constants, const Buffer<Photon>& photons,
-              const Buffer<std::uint32_t>& largest_radius, std::uint32_t photon_count, const Enqueue& enqueue);
+              const Buffer<std::uint32_t>& largest_radius, const Enqueue& enqueue);
 
     const Buffer<cl_uint2>& pairs() const { return pairs_; }
     const Buffer<std::uint32_t>& bucket_begin() const { return bucket_begin_; }

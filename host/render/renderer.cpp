@@ -6,6 +6,7 @@
 #include "opencl/errors.h"
 #include "render/pilot.h"
 #include "render/radius_schedule.h"
+#include "render/work_groups.h"
 
 #include <algorithm>
 #include <bit>
@@ -73,25 +74,16 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
     film_ = Buffer<FilmPixel>(device, "film", pixels);
 
-    const Stopwatch building;
-    build_kernels();
-    statistics_.build_kernels_seconds = building.seconds();
-
     const auto paths = static_cast<std::uint32_t>(options.photons_per_pass);
     photon_items_ = (paths + paths_per_item - 1) / paths_per_item;
     item_counts_ = Buffer<std::uint32_t>(device, "photon counts", photon_items_);
-    item_rays_ = Buffer<std::uint32_t>(device, "photon rays", std::vector<std::uint32_t>(photon_items_, 0U));
-    allocate_photons(static_cast<std::uint32_t>(photons_per_path * std::min(paths, paths_per_item)));
+    item_rays_ = Buffer<std::uint32_t>(device, "photon rays", photon_items_);
 
-    const Stopwatch rendering;
-    largest_radius0_ = options.radius ? static_cast<float>(*options.radius) : measure_radii();
-    if (options.radius)
-        radius0_.fill(device_, largest_radius0_);
-    film_clear_.setArg(0, radius0_.cl());
-    film_clear_.setArg(1, film_.cl());
-    enqueue(Step::Film, film_clear_, pixels);
-    collect_times();
-    statistics_.render_seconds = rendering.seconds();
+    const Stopwatch building;
+    build_kernels();
+    allocate_photons(static_cast<std::uint32_t>(photons_per_path * std::min(paths, paths_per_item)));
+    run_pilot();
+    statistics_.build_kernels_seconds = building.seconds();
 }
 
 void Renderer::build_kernels() {
@@ -140,14 +132,33 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
                                    (store_spectra ? static_cast<double>(sizeof(float)) * layout_.padded() : 0.0);
 }
 
-float Renderer::measure_radii() {
-    radius0_.fill(device_, 1.0F);
+void Renderer::run_pilot() {
+    largest_radius0_ = static_cast<float>(options_.radius.value_or(1.0));
+    radius0_.fill(device_, largest_radius0_);
+    clear_film();
     fill_wavelengths(pilot_pass);
     trace_eye_paths(pilot_pass, 1.0F);
     trace_photons(pilot_pass);
-    const std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
-    radius0_.write(device_, radii);
-    return *std::max_element(radii.begin(), radii.end());
+    if (!options_.radius) {
+        const std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
+        radius0_.write(device_, radii);
+        largest_radius0_ = *std::max_element(radii.begin(), radii.end());
+        trace_eye_paths(pilot_pass, 1.0F); // visible points hold radii
+    }
+    sort_photons();
+    gather_photons();
+    add_to_film();
+    clear_film();
+    collect_times();
+    statistics_.step_seconds = {};
+    statistics_.photons_stored = 0;
+}
+
+void Renderer::clear_film() {
+    item_rays_.fill(device_, 0U);
+    film_clear_.setArg(0, radius0_.cl());
+    film_clear_.setArg(1, film_.cl());
+    enqueue(Step::Film, film_clear_, film_.size(), pixel_group);
 }
 
 void Renderer::render_pass(std::uint32_t pass) {
@@ -175,7 +186,8 @@ void Renderer::fill_wavelengths(std::uint32_t pass) {
     wavelengths_.setArg(argument++, spectrum_is_smooth_.cl());
     wavelengths_.setArg(argument++, spectrum_rows_);
     wavelengths_.setArg(argument++, pass_table_.cl());
-    enqueue(Step::Wavelengths, wavelengths_, static_cast<std::size_t>(layout_.padded()));
+    const auto wavelengths = static_cast<std::size_t>(layout_.padded());
+    enqueue(Step::Wavelengths, wavelengths_, wavelengths, std::min(wavelengths, pixel_group));
 }
 
 void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
@@ -187,7 +199,7 @@ void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
     eye_pass_.setArg(argument++, film_.cl());
     eye_pass_.setArg(argument++, visible_points_.cl());
     eye_pass_.setArg(argument++, eye_spectra_.cl());
-    enqueue(Step::EyePass, eye_pass_, visible_points_.size());
+    enqueue(Step::EyePass, eye_pass_, visible_points_.size(), pixel_group);
 
     if (!options_.statistics_radius) {
         largest_radius_.fill(device_, std::bit_cast<std::uint32_t>(largest_radius0_ * scale));
@@ -196,7 +208,7 @@ void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
     largest_radius_.fill(device_, 0U);
     film_largest_radius_.setArg(0, visible_points_.cl());
     film_largest_radius_.setArg(1, largest_radius_.cl());
-    enqueue(Step::EyePass, film_largest_radius_, visible_points_.size());
+    enqueue(Step::EyePass, film_largest_radius_, visible_points_.size(), pixel_group);
 }
 
 void Renderer::trace_photons(std::uint32_t pass) {
@@ -210,8 +222,8 @@ void Renderer::trace_photons(std::uint32_t pass) {
         photon_pass_.setArg(argument++, photon_spectra_.cl());
         photon_pass_.setArg(argument++, item_counts_.cl());
         photon_pass_.setArg(argument++, item_rays_.cl());
-        enqueue(Step::PhotonPass, photon_pass_, photon_items_);
-        sorter_.count(item_counts_, [this](const ::cl::Kernel& k, std::size_t n) { enqueue(Step::Grid, k, n); });
+        enqueue(Step::PhotonPass, photon_pass_, photon_items_, item_group);
+        sorter_.count(item_counts_, enqueue_grid());
         const PhotonSorter::Summary summary = sorter_.summary(device_);
         photon_count_ = summary.photons;
         if (summary.most_per_item <= capacity_per_item_)
@@ -222,8 +234,7 @@ void Renderer::trace_photons(std::uint32_t pass) {
 
 void Renderer::sort_photons() {
     statistics_.photons_stored += photon_count_;
-    sorter_.sort(scene_buffers_.constants(), photons_, largest_radius_, photon_count_,
-                 [this](const ::cl::Kernel& kernel, std::size_t items) { enqueue(Step::Grid, kernel, items); });
+    sorter_.sort(scene_buffers_.constants(), photons_, largest_radius_, enqueue_grid());
 }
 
 void Renderer::gather_photons() {
@@ -234,7 +245,7 @@ void Renderer::gather_photons() {
         gather_.setArg(argument++, *buffer);
     gather_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
     gather_.setArg(argument++, gathered_flux_.cl());
-    enqueue(Step::Gather, gather_, visible_points_.size());
+    enqueue(Step::Gather, gather_, visible_points_.size(), pixel_group);
 }
 
 void Renderer::add_to_film() {
@@ -242,13 +253,27 @@ void Renderer::add_to_film() {
     film_add_.setArg(1, gathered_flux_.cl());
     film_add_.setArg(2, static_cast<float>(radius_alpha));
     film_add_.setArg(3, film_.cl());
-    enqueue(Step::Film, film_add_, film_.size());
+    enqueue(Step::Film, film_add_, film_.size(), pixel_group);
 }
 
-void Renderer::enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items) {
-    ::cl::Event event;
-    device_.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(items), ::cl::NullRange, nullptr, &event);
-    events_.emplace_back(step, event);
+void Renderer::enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group) {
+    const std::size_t whole = items / group * group;
+    const auto launch = [&](std::size_t offset, std::size_t count, std::size_t size) {
+        ::cl::Event event;
+        device_.queue.enqueueNDRangeKernel(kernel, ::cl::NDRange(offset), ::cl::NDRange(count), ::cl::NDRange(size),
+                                           nullptr, &event);
+        events_.emplace_back(step, event);
+    };
+    if (whole > 0)
+        launch(0, whole, group);
+    if (whole < items)
+        launch(whole, items - whole, items - whole);
+}
+
+PhotonSorter::Enqueue Renderer::enqueue_grid() {
+    return [this](const ::cl::Kernel& kernel, std::size_t items, std::size_t group) {
+        enqueue(Step::Grid, kernel, items, group);
+    };
 }
 
 void Renderer::collect_times() {

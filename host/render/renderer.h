@@ -19,15 +19,16 @@ namespace tristim {
 /// order from 0, since radii then depend on the passes before).
 class Renderer {
   public:
-    /// Builds tree, buffers and kernels, and measures initial radii by a pilot pass if the options give none.
-    /// Throws Error if the options cannot be rendered, a kernel does not build or the device has too little memory.
+    /// Builds tree, buffers and kernels, and runs a pilot pass, which makes drivers compile what they compile at the
+    /// first launch and measures initial radii if the options give none. Throws Error if the options cannot be
+    /// rendered, a kernel does not build or the device has too little memory.
     Renderer(const Scene& scene, const RenderOptions& options, const Device& device);
 
     void render_pass(std::uint32_t pass);
 
     FilmImage film() const;
 
-    /// Rays traced so far, the pilot's photons included.
+    /// Rays traced so far, those of the pilot left out.
     RayTotals rays() const;
 
     const RenderStatistics& statistics() const { return statistics_; }
@@ -48,7 +49,8 @@ class Renderer {
   private:
     void build_kernels();
     void allocate_photons(std::uint32_t capacity_per_item);
-    float measure_radii(); ///< by a pilot pass; returns the largest
+    void run_pilot();
+    void clear_film();
 
     void fill_wavelengths(std::uint32_t pass);
     void trace_eye_paths(std::uint32_t pass, float scale);
@@ -57,7 +59,8 @@ class Renderer {
     void gather_photons();
     void add_to_film();
 
-    void enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items);
+    void enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group);
+    PhotonSorter::Enqueue enqueue_grid();
     void collect_times();
 
     Device device_;

@@ -22,8 +22,8 @@ struct RayTotals {
 /// What a render has cost so far.
 struct RenderStatistics {
     double bvh_seconds = 0.0;
-    double build_kernels_seconds = 0.0;
-    double render_seconds = 0.0;                          ///< passes and pilot, wall clock
+    double build_kernels_seconds = 0.0;                   ///< and the pilot pass
+    double render_seconds = 0.0;                          ///< passes, wall clock
     std::array<double, step_names.size()> step_seconds{}; ///< on the device
     std::uint64_t passes = 0;
     std::uint64_t photons_emitted = 0;
