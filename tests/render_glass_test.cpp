@@ -134,13 +134,18 @@ TEST(CoveredFloor, HasTheRadianceOfTheEnergyBalance) {
         Spectrum eta;
         const char* method;
         bool direct_photons;
+        bool from_below;
     };
     const Spectrum plain = Spectrum::constant(1.6);
     const Spectrum flint = Spectrum::named("glass-F11");
-    for (const Plate& plate :
-         {Plate{"plain", plain, "tristimulus:1", false}, Plate{"flint-sample", flint, "tristimulus:1", false},
-          Plate{"flint-photons", flint, "tristimulus:4", true}}) {
-        const CoveredFloor floor(plate.eta, sky, 8.0);
+    for (const Plate& plate : {Plate{"plain", plain, "tristimulus:1", false, false},
+                               Plate{"flint-sample", flint, "tristimulus:1", false, false},
+                               Plate{"flint-photons", flint, "tristimulus:4", true, false},
+                               Plate{"flint-below-tristimulus:1", flint, "tristimulus:1", false, true},
+                               Plate{"flint-below-spectral:400", flint, "spectral:400", false, true}}) {
+        CoveredFloor floor(plate.eta, sky, 8.0);
+        if (plate.from_below) // between plate and floor: single-wavelength photons at points of all wavelengths
+            floor.scene.camera = look_at({0, -0.05, 0.08}, {0, 0, 0}, {0, 0, 1}, 30.0);
         TestImage exact{width, height, {}};
         for (int pixel = 0; pixel < width * height; ++pixel) {
             exact.xyz.push_back(integrate_xyz(sky.emission, [&](double lambda) {
@@ -149,7 +154,7 @@ TEST(CoveredFloor, HasTheRadianceOfTheEnergyBalance) {
                 const double rho = floor.reflectance(lambda);
                 const double radiance = rho * (1.0 - reflected) / (1.0 - rho * reflected);
                 const auto seen = [&](const CameraRay& ray) {
-                    const double r = plate_reflectance(-ray.direction.z, eta);
+                    const double r = plate.from_below ? 0.0 : plate_reflectance(-ray.direction.z, eta);
                     return r + (1.0 - r) * radiance;
                 };
                 const int x = pixel % width;
