@@ -106,8 +106,8 @@ inline Estimate estimate(const std::vector<double>& samples) {
     return e;
 }
 
-/// How many false alarms a family of tests may have: one in ten thousand.
-inline constexpr double family_error = 1e-4;
+/// How many false alarms a family of tests may have: three in ten thousand.
+inline constexpr double family_error = 3e-4;
 
 /// Two samples' means (Welch's t-test), or one sample's and an exact value (b without error). `tolerance` is the
 /// difference that rounding explains. Empty `samples_b` counts: 0.

@@ -32,7 +32,8 @@ Scene plane_scene(LightIndex shining, const Spectrum& reflectance) {
     Light& distant = scene.lights[Distant];
     distant.kind = Light::Kind::Distant;
     distant.direction = V3d(0.3, 0.4, -1.2).normalized();
-    distant.scale = 2.0;
+    // Scales such that every light is chosen in several of the passes: pixels are near enough to normal then.
+    distant.scale = 0.7;
     Light& point = scene.lights[Point];
     point.kind = Light::Kind::Point;
     point.position = {-0.6, 0.7, 1.1};
@@ -44,9 +45,9 @@ Scene plane_scene(LightIndex shining, const Spectrum& reflectance) {
     // The falloff crosses the image.
     spot.cos_total_width = std::cos(30.0 * pi / 180.0);
     spot.cos_falloff_start = std::cos(3.0 * pi / 180.0);
-    spot.scale = 5.0;
+    spot.scale = 60.0;
 
-    const int area = add_area_light(scene, Spectrum::constant(1.0), 4.0);
+    const int area = add_area_light(scene, Spectrum::constant(1.0), 20.0);
     // Shines down: its normal is -z.
     add_parallelogram(scene, {1.2, 0.3, 1.3}, {0.0, 0.6, 0.0}, {0.8, 0.0, 0.0},
                       add_diffuse(scene, Spectrum::constant(0.0)), area);
@@ -143,7 +144,7 @@ TEST_P(LitPlane, HasTheExactRadiance) {
         const double squared_radius = options.direct_photons ? mean_squared_radius(radius, passes) : 0.0;
         const std::string light = std::array{"distant", "point", "spot", "area", "together"}[shining];
         expect_exact("plane-" + light + "-" + case_name({GetParam(), 0}), render_seeds(scene, options, passes, runs),
-                     exact_image(scene, reflectance, squared_radius), {2e-5, 0.015});
+                     exact_image(scene, reflectance, squared_radius), {2e-5, 0.02});
     }
 }
 

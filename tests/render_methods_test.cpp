@@ -34,9 +34,9 @@ class Methods : public testing::TestWithParam<SceneCase> {};
 TEST_P(Methods, ConvergeToOneImage) {
     const std::string name = GetParam().folder;
     const Scene scene = load_scene(TRISTIM_SOURCE_DIR "/meshes/" + name + "/scene.pbrt");
-    const int passes = long_tests() ? 256 : 12;
-    const int runs = long_tests() ? 16 : 5;
-    const Demands demands{2e-5, long_tests() ? 0.01 : 0.06};
+    const int passes = long_tests() ? 96 : 12;
+    const int runs = long_tests() ? 12 : 5;
+    const Demands demands{2e-5, long_tests() ? 0.02 : 0.06};
     const RenderOptions options = small_render("spectral:400", 32, 32, 8192, GetParam().radius, 12);
     const auto render = [&](const MethodCase& method) {
         return block_means(render_method(scene, options, method, passes, runs), block);
@@ -123,7 +123,7 @@ TEST_P(RgbMethod, DoesNotConvergeToTheSpectralImage) {
 // The prism's screen, and a part of the dispersion scene's wall that single wavelengths reach.
 INSTANTIATE_TEST_SUITE_P(Screens, RgbMethod,
                          testing::Values(ScreenCase{"prism", 96, 64, {0, 16, 48, 32}, 0.04, 8, 4.0},
-                                         ScreenCase{"dispersion", 128, 128, {96, 0, 32, 32}, 0.06, 512, 2.0}),
+                                         ScreenCase{"dispersion", 128, 128, {96, 0, 32, 16}, 0.06, 512, 2.0}),
                          [](const testing::TestParamInfo<ScreenCase>& screen) {
                              return std::string(screen.param.folder);
                          });

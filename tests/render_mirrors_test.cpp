@@ -40,10 +40,9 @@ TEST(ConductorMirror, ReflectsTheEnvironmentByFresnel) {
     TestImage exact{width, height, {}};
     for (int pixel = 0; pixel < width * height; ++pixel) {
         exact.xyz.push_back(integrate_xyz(light, [&](double lambda) {
-            return 1.5 *
-                   pixel_mean(scene.camera, width, height, pixel % width, pixel / width, [&](const CameraRay& ray) {
-                       return fresnel(-ray.direction.z, {eta(lambda), k(lambda)});
-                   });
+            return pixel_mean(scene.camera, width, height, pixel % width, pixel / width, [&](const CameraRay& ray) {
+                return fresnel(-ray.direction.z, {eta(lambda), k(lambda)});
+            });
         }));
     }
     // The kernels read the metal's data at bin means joined by lines: 1e-4 covers the corners of its table.
