@@ -98,8 +98,8 @@ float sample_spot_cosine(float u, float cos_total_width, float cos_falloff_start
     return cos_total_width + x * (cos_falloff_start - cos_total_width);
 }
 
-// Unit vectors in 32 bits by the octahedral map (Cigolle et al. 2014, JCGT 3(2)), 16 bits each: error below 0.04°... enough
-// to tell the sides and corners of surfaces, which is all that the normals of photons are for.
+// Unit vectors in 32 bits by the octahedral map (Cigolle et al. 2014, JCGT 3(2)), 16 bits each: right to 0.004°. The normals of
+// photons only have to tell the sides and corners of surfaces.
 uint pack_normal(float3 n) {
     const float3 a = fabs(n);
     float2 p = n.xy / (a.x + a.y + a.z);
