@@ -66,6 +66,7 @@ TEST(PbrtReference, DispersionImageAgreesInBlockMeans) {
     // Normal deviates beyond this have probability 0.01 in all 3,072 together (Šidák).
     constexpr double critical = 4.65;
     const double most = largest(block_z_scores(image, reference, 1.0));
+    RecordProperty("largest_z_score", std::to_string(most));
     EXPECT_LT(most, critical);
     if (most >= critical) {
         const std::string path = testing::TempDir() + "dispersion-icosahedron-failed.exr";

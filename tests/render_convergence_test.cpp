@@ -48,15 +48,19 @@ std::vector<double> errors_after(const Scene& scene, const RenderOptions& option
     return errors;
 }
 
-/// Slopes of repeated renders, of which the mean must lie within a 99.9 % interval (Student's t) of the expected one.
-void expect_slope(const std::string& name, const std::vector<double>& slopes, double expected, double allowance) {
+/// The slope of repeated renders, with 99.9 % confidence (Student's t, 24 runs), is at least as steep as the theory's,
+/// which takes photons as independent while ours are stratified, and not as steep as -1/2, which a radius that stays
+/// would give.
+void expect_slope(const std::string& name, const std::vector<double>& slopes, double expected) {
+    ASSERT_EQ(slopes.size(), 24U);
+    constexpr double student_t = 3.485; // 23 degrees of freedom, one-sided 0.001
     const Estimate e = estimate(slopes);
-    const Comparison c = compare_estimates(e, slopes.size(), {expected, 0.0}, 0, allowance);
+    const double margin = student_t * std::sqrt(e.squared_error);
     testing::Test::RecordProperty(
         name, fmt::format("{:.4f} +- {:.4f}, expected {:.4f}", e.mean, std::sqrt(e.squared_error), expected));
-    EXPECT_GT(c.p, 1e-3) << name << ": slope " << e.mean << " ± " << std::sqrt(e.squared_error) << ", expected "
-                         << expected << " ± " << allowance;
-    EXPECT_LT(std::sqrt(e.squared_error), 0.02) << name << ": too few runs to tell the slope";
+    EXPECT_LE(e.mean - margin, expected) << name << ": slope " << e.mean << " ± " << margin;
+    EXPECT_GT(e.mean - margin, -0.5) << name << ": slope " << e.mean << " ± " << margin;
+    EXPECT_LT(margin, 0.07) << name << ": too few runs to tell the slope";
 }
 
 /// Radii of a pixel over the passes, relative to the first: of the schedule, or as photon statistics make them on
@@ -107,7 +111,7 @@ TEST_P(Convergence, VarianceFollowsTheRadii) {
         options.seed = seed;
         slopes.push_back(log_slope(passes, errors_after(scene, options, passes, one)));
     }
-    expect_slope(statistics ? "statistics" : "global", slopes, log_slope(passes, expected), 0.02);
+    expect_slope(statistics ? "statistics" : "global", slopes, log_slope(passes, expected));
 }
 
 INSTANTIATE_TEST_SUITE_P(Radius, Convergence, testing::Values(false, true),
