@@ -48,7 +48,7 @@ float3 weighted_xyz(const Scene* scene, const PathWeight* weight, int first, int
 
 float3 direct_light(const Scene* scene, const Interaction* it, float3 n, int reflectance, const PathWeight* weight,
                     float u_light, float2 u_point) {
-    const int chosen = scene->constants->light_count == 1 ? 0 : choose_light(scene, u_light);
+    const int chosen = choose_light(scene, u_light);
     const DirectLight light = sample_direct(scene->lights + chosen, it, n, u_point);
     // Negated, so that a NaN goes on to the film, which counts it.
     if (light.irradiance <= 0.0f || is_occluded(scene, light.origin, light.direction, light.t_max))

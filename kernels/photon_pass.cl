@@ -60,7 +60,7 @@ bool reflect_diffusely(const Scene* scene, int reflectance, float u, PathWeight*
 
 // u is the path's point of the low-discrepancy sequence.
 void trace_photon(const Scene* scene, uint seed, uint pass, uint path, float8 u, PhotonStore* store) {
-    const int chosen = scene->constants->light_count == 1 ? 0 : choose_light(scene, u.PHOTON_LIGHT);
+    const int chosen = choose_light(scene, u.PHOTON_LIGHT);
     const global SceneLight* light = scene->lights + chosen;
     const int slot = min((int)(u.PHOTON_SLOT * (float)W), W - 1);
 

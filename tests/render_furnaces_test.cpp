@@ -1,6 +1,7 @@
 // Scenes whose radiance is the same everywhere, and reflection of a uniform environment: exact radiance by energy
 // balance.
 #include "image_statistics.h"
+#include "method_cases.h"
 
 #include <cmath>
 
@@ -35,18 +36,7 @@ TEST(Furnace, EmptySceneShowsTheEnvironment) {
     }
 }
 
-struct Case {
-    const char* method;
-    bool direct_photons;
-};
-
-std::string case_name(const testing::TestParamInfo<Case>& info) {
-    std::string name = info.param.method;
-    std::replace(name.begin(), name.end(), ':', '_');
-    return name + (info.param.direct_photons ? "_photons" : "_sample");
-}
-
-class DiffuseFurnace : public testing::TestWithParam<Case> {};
+class DiffuseFurnace : public testing::TestWithParam<MethodCase> {};
 
 /// A closed box whose walls all emit 0.5 and reflect half of what they receive: L = 0.5 + 0.5 L = 1 everywhere, as
 /// 0.5^64 is nothing. The camera looks at the middle of a wall, since a search disc that reaches over an edge would
@@ -60,16 +50,16 @@ TEST_P(DiffuseFurnace, HasRadianceOne) {
             add_area_light(scene, white, 0.5));
     RenderOptions options = small_render(GetParam().method, 8, 8, 8192, 0.3, 64);
     options.direct_photons = GetParam().direct_photons;
-    expect_exact("furnace-" + case_name({GetParam(), 0}), render_seeds(scene, options, 24, 8),
+    expect_exact("furnace-" + method_case_name({GetParam(), 0}), render_seeds(scene, options, 24, 8),
                  uniform_image(8, 8, integrate_xyz(white, [](double) { return 1.0; })), {2e-5, 0.006});
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, DiffuseFurnace,
-                         testing::Values(Case{"tristimulus:1", false}, Case{"tristimulus:1", true},
-                                         Case{"tristimulus:20", false}, Case{"tristimulus:20", true},
-                                         Case{"spectral:400", false}, Case{"spectral:400", true}, Case{"rgb", false},
-                                         Case{"rgb", true}),
-                         case_name);
+                         testing::Values(MethodCase{"tristimulus:1", false}, MethodCase{"tristimulus:1", true},
+                                         MethodCase{"tristimulus:20", false}, MethodCase{"tristimulus:20", true},
+                                         MethodCase{"spectral:400", false}, MethodCase{"spectral:400", true},
+                                         MethodCase{"rgb", false}, MethodCase{"rgb", true}),
+                         method_case_name);
 
 /// A sphere of glass in uniform radiance 1, which absorbs nothing: it cannot be seen. Reflection and refraction are
 /// chosen by chance without a change of weight, and 1/η² on the way in is η² on the way out.

@@ -1,6 +1,7 @@
 // Light through glass, seen through glass: every combination of visible points and photons that carry all wavelengths
 // of a pass or one alone.
 #include "image_statistics.h"
+#include "method_cases.h"
 
 #include <cmath>
 #include <numbers>
@@ -14,21 +15,10 @@ Spectrum coloured_reflectance() {
     return Spectrum::piecewise_linear({300.0, 420.0, 520.0, 620.0, 900.0}, {0.2, 0.3, 0.7, 0.45, 0.8});
 }
 
-struct Case {
-    const char* method;
-    bool direct_photons;
-};
-
-std::string case_name(const testing::TestParamInfo<Case>& info) {
-    std::string name = info.param.method;
-    std::replace(name.begin(), name.end(), ':', '_');
-    return name + (info.param.direct_photons ? "_photons" : "_sample");
-}
-
 /// A slab whose index is 1 but for some 10⁻⁶ that depend on the wavelength: paths keep one wavelength there, and
 /// nothing else happens. It hangs over a part of the floor, between two lights. The camera sees the floor past its
 /// edge, through it and beside it, where light from above comes through the slab and light from below does not.
-class GhostGlass : public testing::TestWithParam<Case> {};
+class GhostGlass : public testing::TestWithParam<MethodCase> {};
 
 TEST_P(GhostGlass, ShowsTheFloorAsIfItWereNotThere) {
     constexpr int width = 8;
@@ -74,13 +64,14 @@ TEST_P(GhostGlass, ShowsTheFloorAsIfItWereNotThere) {
     }
     RenderOptions options = small_render(GetParam().method, width, height, 32768, radius, 8);
     options.direct_photons = GetParam().direct_photons;
-    expect_exact("ghost-" + case_name({GetParam(), 0}), render_seeds(scene, options, passes, 6), exact, {1e-4, 0.06});
+    expect_exact("ghost-" + method_case_name({GetParam(), 0}), render_seeds(scene, options, passes, 6), exact,
+                 {1e-4, 0.06});
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, GhostGlass,
-                         testing::Values(Case{"tristimulus:1", false}, Case{"tristimulus:1", true},
-                                         Case{"tristimulus:5", false}, Case{"tristimulus:5", true}),
-                         case_name);
+                         testing::Values(MethodCase{"tristimulus:1", false}, MethodCase{"tristimulus:1", true},
+                                         MethodCase{"tristimulus:5", false}, MethodCase{"tristimulus:5", true}),
+                         method_case_name);
 
 /// Fresnel reflectance for unpolarised light from vacuum (Born & Wolf 1999, section 1.5.2).
 double fresnel(double cos_i, double eta) {

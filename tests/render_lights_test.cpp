@@ -1,5 +1,6 @@
 // A diffuse plane under every kind of light: exact radiance, by sampled direct light and by photons alone.
 #include "image_statistics.h"
+#include "method_cases.h"
 
 #include <cmath>
 #include <numbers>
@@ -114,18 +115,7 @@ TestImage exact_image(const Scene& scene, const Spectrum& reflectance, double sq
     return image;
 }
 
-struct Case {
-    const char* method;
-    bool direct_photons;
-};
-
-class LitPlane : public testing::TestWithParam<Case> {};
-
-std::string case_name(const testing::TestParamInfo<Case>& info) {
-    std::string name = info.param.method;
-    std::replace(name.begin(), name.end(), ':', '_');
-    return name + (info.param.direct_photons ? "_photons" : "_sample");
-}
+class LitPlane : public testing::TestWithParam<MethodCase> {};
 
 TEST_P(LitPlane, HasTheExactRadiance) {
     const bool rgb = std::string(GetParam().method) == "rgb"; // exact for grey surfaces only
@@ -143,17 +133,18 @@ TEST_P(LitPlane, HasTheExactRadiance) {
         options.direct_photons = GetParam().direct_photons;
         const double squared_radius = options.direct_photons ? mean_squared_radius(radius, passes) : 0.0;
         const std::string light = std::array{"distant", "point", "spot", "area", "together"}[shining];
-        expect_exact("plane-" + light + "-" + case_name({GetParam(), 0}), render_seeds(scene, options, passes, runs),
-                     exact_image(scene, reflectance, squared_radius), {2e-5, 0.02});
+        expect_exact("plane-" + light + "-" + method_case_name({GetParam(), 0}),
+                     render_seeds(scene, options, passes, runs), exact_image(scene, reflectance, squared_radius),
+                     {2e-5, 0.02});
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, LitPlane,
-                         testing::Values(Case{"tristimulus:1", false}, Case{"tristimulus:1", true},
-                                         Case{"tristimulus:20", false}, Case{"tristimulus:20", true},
-                                         Case{"spectral:400", false}, Case{"spectral:400", true}, Case{"rgb", false},
-                                         Case{"rgb", true}),
-                         case_name);
+                         testing::Values(MethodCase{"tristimulus:1", false}, MethodCase{"tristimulus:1", true},
+                                         MethodCase{"tristimulus:20", false}, MethodCase{"tristimulus:20", true},
+                                         MethodCase{"spectral:400", false}, MethodCase{"spectral:400", true},
+                                         MethodCase{"rgb", false}, MethodCase{"rgb", true}),
+                         method_case_name);
 
 /// The oracle's own oracle: Lambert's formula against quadrature of L cos cos' / d² over the light.
 TEST(LitPlaneOracle, PolygonFormulaAgreesWithQuadrature) {

@@ -1,6 +1,7 @@
 #include "commands/bench_pass.h"
 
 #include "base/error.h"
+#include "base/median.h"
 #include "base/stopwatch.h"
 #include "bvh/ray_tracer.h"
 #include "commands/render_arguments.h"
@@ -19,12 +20,6 @@ struct BenchPassCommand {
     int repeats = 32;
     bool json = false;
 };
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 /// The rays of one pass, apart by kind of query.
 struct PassRays {

@@ -1,6 +1,7 @@
 #include "commands/bench_rays.h"
 
 #include "base/error.h"
+#include "base/median.h"
 #include "bvh/bench_meshes.h"
 #include "bvh/embree_tracer.h"
 #include "bvh/ray_tracer.h"
@@ -147,12 +148,6 @@ double seconds(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 std::size_t count_mismatches(const std::vector<RayHit>& ours, const std::vector<RayHit>& theirs) {

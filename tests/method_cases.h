@@ -1,0 +1,22 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace tristim::test {
+
+/// A method and where direct light comes from: the parameter of tests that run for several.
+struct MethodCase {
+    const char* method;
+    bool direct_photons;
+};
+
+inline std::string method_case_name(const testing::TestParamInfo<MethodCase>& info) {
+    std::string name = info.param.method;
+    std::replace(name.begin(), name.end(), ':', '_');
+    return name + (info.param.direct_photons ? "_photons" : "_sample");
+}
+
+} // namespace tristim::test
