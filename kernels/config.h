@@ -17,6 +17,12 @@
 #ifndef HAS_CONDUCTOR
 #define HAS_CONDUCTOR 0  // a smooth conductor: camera paths may be coloured
 #endif
+#ifndef HAS_FILM
+#define HAS_FILM 0  // a thin film: paths may be coloured
+#endif
+#ifndef HAS_ABSORBING_FILM
+#define HAS_ABSORBING_FILM 0  // a film with a layer that absorbs
+#endif
 #ifndef HAS_SHADING_NORMALS
 #define HAS_SHADING_NORMALS 0  // a mesh with vertex normals
 #endif

@@ -90,8 +90,8 @@ Interaction make_interaction(const Scene* scene, const Hit* hit) {
     it.light = triangle->light;
     it.shading_normal = it.normal;
 #if HAS_SHADING_NORMALS
-    if (triangle->normals >= 0) {
-        const global float* n = scene->normals + triangle->normals;
+    if (triangle->attributes >= 0) {
+        const global float* n = scene->normals + triangle->attributes;
         const float3 blended = (1.0f - hit->u - hit->v) * vload3(0, n) + hit->u * vload3(1, n) + hit->v * vload3(2, n);
         const float squared = dot(blended, blended);
         if (squared > 0.0f)

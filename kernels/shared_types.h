@@ -75,7 +75,7 @@ typedef struct Triangle {
     float edge1_x, edge1_y, edge1_z;
     int light;  // the area light on it, or -1
     float edge2_x, edge2_y, edge2_z;
-    int normals;  // index of its first vertex normal (three floats each, three in a row), or -1
+    int attributes;  // index of its first vertex attribute, or -1: three normals, then three pairs u, v if HAS_UV
     float normal_x, normal_y, normal_z;  // unit geometric normal
     float extent;  // largest |coordinate| of its vertices, see offset_from_triangle
 } Triangle;
@@ -84,15 +84,53 @@ typedef struct Triangle {
 #define MATERIAL_DIELECTRIC 1
 #define MATERIAL_CONDUCTOR 2
 
-// A material, 32 bytes; reflectance, eta and k are rows of the table of spectra.
+// A material, 48 bytes; reflectance, eta, k and internal_reflectance are rows of the table of spectra.
 typedef struct SurfaceMaterial {
     int kind;
     int reflectance;
     int eta;
     int k;
     int dispersive;  // a dielectric whose eta depends on the wavelength
-    int unused[3];
+    int film;        // index of its film's outermost layer, the others follow
+    int film_layers;
+    int film_texture;  // thickness of the first layer in nm, or -1
+    float alpha_u, alpha_v;  // GGX roughness along the surface's tangent and across; 0: smooth
+    int takes_photons;  // rough enough to be a visible point
+    int internal_reflectance;  // of diffuse light from below the film of a coated diffuse surface
 } SurfaceMaterial;
+
+// A layer of a thin film, 16 bytes: index eta + ik, rows of the table of spectra.
+typedef struct SceneFilmLayer {
+    float thickness;  // nm
+    int eta;
+    int k;
+    int unused;
+} SceneFilmLayer;
+
+#define TEXTURE_BILINEAR 0
+#define TEXTURE_IMAGE 1
+#define MAPPING_UV 0
+#define MAPPING_PLANAR 1
+#define MAPPING_SPHERICAL 2
+#define MAPPING_CYLINDRICAL 3
+#define WRAP_REPEAT 0
+#define WRAP_CLAMP 1
+#define WRAP_BLACK 2
+
+// A texture of single values, 96 bytes. to_texture, row by row, takes a world point as a column vector to texture space (planar
+// mapping: to s, t); for uv mapping to_texture[0] and [5] scale u and v, [3] and [7] shift them. An image's texels lie row by
+// row from the top.
+typedef struct SceneTexture {
+    int kind;
+    int mapping;
+    int wrap;
+    int first_texel;
+    int width, height;
+    float corners[4];  // values at (0,0), (0,1), (1,0), (1,1)
+    float outside;  // of an image with WRAP_BLACK, beyond its border
+    int unused;
+    float to_texture[12];
+} SceneTexture;
 
 #define LIGHT_POINT 0
 #define LIGHT_SPOT 1
@@ -157,7 +195,8 @@ typedef struct FilmPixel {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BvhNode) == 256 && sizeof(BvhLeaf) == 320);
 static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
-static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 32);
+static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 48);
+static_assert(sizeof(SceneFilmLayer) == 16 && sizeof(SceneTexture) == 96);
 static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
 static_assert(sizeof(FilmPixel) == 72);
 } // namespace tristim

@@ -99,12 +99,12 @@ void add_triangles(const Shape& shape, const Light* area_light, int spectrum, Fl
         t.extent = largest_coordinate({v0, v1, v2});
         t.material = shape.material;
         t.light = -1;
-        t.normals = -1;
+        t.attributes = -1;
         if (!shape.mesh.normals.empty()) {
-            t.normals = static_cast<int>(flat.normals.size());
+            t.attributes = static_cast<int>(flat.attributes.size());
             for (const std::uint32_t corner : corners) {
                 const V3f n = shape.mesh.normals[corner];
-                flat.normals.insert(flat.normals.end(), {n.x, n.y, n.z});
+                flat.attributes.insert(flat.attributes.end(), {n.x, n.y, n.z});
             }
         }
         if (area_light != nullptr) {

@@ -14,8 +14,22 @@
 namespace tristim {
 
 using Imath::M44d;
+using Imath::V2f;
 using Imath::V3d;
 using Imath::V3f;
+
+/// One homogeneous layer of a thin film, of complex index eta + ik.
+struct FilmLayer {
+    double thickness = 0.0; ///< nm, ≥ 0
+    Spectrum eta = Spectrum::constant(1.5);
+    Spectrum k = Spectrum::constant(0.0); ///< ≥ 0
+};
+
+/// A stack of layers on a surface, the outermost first; no layers: no film. What lies outside has index 1.
+struct Film {
+    std::vector<FilmLayer> layers;
+    int thickness_texture = -1; ///< index into Scene::textures: thickness of the first and only layer; -1: none
+};
 
 /// A surface's scattering. Spectra that a kind does not use stay at their defaults.
 struct Material {
@@ -23,8 +37,28 @@ struct Material {
     Kind kind = Kind::Diffuse;
     std::string name;                               ///< for messages
     Spectrum reflectance = Spectrum::constant(0.5); ///< Diffuse: albedo in [0,1]
-    Spectrum eta = Spectrum::constant(1.5);         ///< Dielectric: index inside over outside. Conductor: real part
+    Spectrum eta = Spectrum::constant(1.5);         ///< Dielectric: index inside over outside. Conductor: real part.
+                                                    ///< Diffuse with a film: index of what lies under the film
     Spectrum k = Spectrum::constant(0.0);           ///< Conductor: imaginary part of the index, ≥ 0
+    double alpha_u = 0.0; ///< GGX roughness along ∂p/∂u (Trowbridge–Reitz α, after pbrt's remapping); 0: smooth
+    double alpha_v = 0.0; ///< and across it
+    Film film;
+};
+
+/// A grey image or pattern over a surface, pbrt's "float" textures.
+struct Texture {
+    enum class Kind { Bilinear, Image };
+    enum class Mapping { Uv, Planar, Spherical, Cylindrical };
+    enum class Wrap { Repeat, Clamp, Black };
+    Kind kind = Kind::Bilinear;
+    Mapping mapping = Mapping::Uv;
+    M44d world_to_texture;                      ///< Imath convention; Planar: (x, y) of the result is (s, t)
+    std::array<double, 4> uv_scale{1, 1, 0, 0}; ///< Uv: s = u·[0] + [2], t = v·[1] + [3]
+    std::array<double, 4> corners{}; ///< Bilinear: values at (0,0), (0,1), (1,0), (1,1) (pbrt's v00 v01 v10 v11)
+    int width = 0, height = 0;       ///< Image: texels, row by row from the top, scaled and decoded
+    std::vector<float> texels;
+    Wrap wrap = Wrap::Repeat;
+    double outside = 0.0; ///< Image with Wrap::Black: the value beyond the border
 };
 
 /// Triangles in world space. `normals` is empty or holds one unit shading normal per vertex. The geometric normal of a
@@ -33,6 +67,7 @@ struct Material {
 struct Mesh {
     std::vector<V3f> positions;
     std::vector<V3f> normals;
+    std::vector<V2f> uv; ///< empty (then pbrt's (0,0), (1,0), (1,1) for each triangle) or one per vertex
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
@@ -88,6 +123,7 @@ struct Scene {
     Camera camera;
     RenderSettings settings;
     std::vector<Material> materials;
+    std::vector<Texture> textures;
     std::vector<Light> lights;
     std::vector<Shape> shapes;
     std::vector<std::string> notes; ///< "file:line: …" for accepted but ignored directives and dropped triangles
