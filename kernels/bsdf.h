@@ -3,89 +3,43 @@
 #ifndef TRISTIM_BSDF_H
 #define TRISTIM_BSDF_H
 
-#include "optics.h"
-#include "scene.h"
-
-// Flux of a photon path or throughput of a camera path: scale · spectrum[w] for every wavelength w while slot is SLOT_ALL,
-// and scale for that wavelength alone, nothing for the others, once slot >= 0.
-typedef struct PathWeight {
-    float scale;
-    int slot;
-#if PATH_SPECTRUM
-    Spectrum spectrum;
+#include "path_weight.h"
+#include "specular.h"
+#if HAS_FILM || HAS_ROUGH
+#include "interface.h"
 #endif
-} PathWeight;
-
-// From here on the path is of one wavelength. Chosen with probability 1/W, it stands for all: weight W.
-void keep_slot(PathWeight* weight, int slot) {
-#if PATH_SPECTRUM
-    weight->scale *= ((const float*)weight->spectrum.block)[slot];
+#if HAS_COATED_DIFFUSE
+#include "coated_diffuse.h"
 #endif
-    weight->scale *= (float)W;
-    weight->slot = slot;
+
+// Whether a surface scatters by chance into directions that light can be sampled for, and yet passes camera paths on.
+bool is_nearly_specular(const global SurfaceMaterial* material) {
+    return HAS_NEARLY_SPECULAR && material->alpha_u > 0.0f && !material->takes_photons;
 }
 
-#if HAS_DIELECTRIC
-// Reflects or refracts about a normal on the incident side; u in [0, 1) decides.
-float3 reflect_or_refract(float3 direction, float3 n, float cos_i, float inverse_eta, float u, bool* refracted) {
-    float cos_t;
-    *refracted = u >= fresnel_dielectric(cos_i, inverse_eta, &cos_t);
-    // Both are cheaper than a branch that no processor can foresee.
-    const float3 reflection = reflect(direction, n, cos_i);
-    const float3 refraction = refract(direction, n, inverse_eta, cos_i, cos_t);
-    return *refracted ? refraction : reflection;
-}
-
-// Reflects or refracts at a smooth dielectric, by chance in proportion to the Fresnel reflectance, so that neither changes
-// the weight; a dispersive one makes the path keep `slot` first. `radiance` says that the path runs from the camera:
-// radiance scales by (η_i/η_t)² at refraction, flux does not (Veach 1997, section 5.2). Returns the new direction.
-float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
-                          float3 direction, float u, int slot, bool radiance, PathWeight* weight) {
+// Scatters a path at a dielectric or a conductor; u are random numbers, of which u.x chooses between reflection and refraction.
+// `radiance` says that the path runs from the camera, `slot` is what it keeps should the surface be dispersive. Returns
+// whether the path goes on. *pdf [1/sr] becomes that of the new direction, 0 for a smooth surface, which has none.
+bool scatter(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, float3* direction, float3 u,
+             int slot, bool radiance, PathWeight* weight, float* pdf) {
+    *pdf = 0.0f;
 #if HAS_DISPERSION
     if (material->dispersive && weight->slot < 0)
         keep_slot(weight, slot);
 #endif
-    const float inside_over_outside = spectrum_row(scene->pass_table, material->eta)[max(weight->slot, 0)];
-    float cos_i;
-    const Facing facing = facing_normal(it, -direction, &cos_i);
-    const float inverse_eta = facing.outside ? 1.0f / inside_over_outside : inside_over_outside;
-    bool refracted;
-    float3 scattered = reflect_or_refract(direction, facing.normal, cos_i, inverse_eta, u, &refracted);
-#if HAS_SHADING_NORMALS
-    // At grazing angles a shading normal may send the ray to the wrong side, where it would count as inside what it never
-    // entered: then the geometric normal takes its place.
-    if ((dot(scattered, it->normal) >= 0.0f) != (facing.outside != refracted)) {
-        const float3 n = facing.outside ? it->normal : -it->normal;
-        scattered = reflect_or_refract(direction, n, min(-dot(direction, n), 1.0f), inverse_eta, u, &refracted);
-    }
+#if HAS_FILM || HAS_ROUGH
+    if (material->film_layers > 0 || material->alpha_u > 0.0f)
+        return scatter_interface(scene, material, it, direction, u, radiance, weight, pdf);
 #endif
-    if (radiance)
-        weight->scale *= refracted ? inverse_eta * inverse_eta : 1.0f;
-    return scattered;
-}
+#if HAS_DIELECTRIC
+    if (material->kind == MATERIAL_DIELECTRIC)
+        *direction = scatter_dielectric(scene, material, it, *direction, u.x, radiance, weight);
 #endif
-
 #if HAS_CONDUCTOR
-// Reflects at a smooth conductor; the Fresnel reflectance multiplies the weight. Returns the new direction.
-float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
-                         float3 direction, PathWeight* weight) {
-    float cos_i;
-    const Facing facing = facing_normal(it, -direction, &cos_i);
-    const global float* eta = spectrum_row(scene->pass_table, material->eta);
-    const global float* k = spectrum_row(scene->pass_table, material->k);
-    if (weight->slot >= 0) {
-        weight->scale *= fresnel_conductor(cos_i, eta[weight->slot], k[weight->slot]);
-    } else {
-        for (int b = 0; b < BLOCKS; ++b)
-            weight->spectrum.block[b] *= fresnel_conductor_lanes(cos_i, vloadv(b, eta), vloadv(b, k));
-    }
-    const float3 scattered = reflect(direction, facing.normal, cos_i);
-#if HAS_SHADING_NORMALS
-    if ((dot(scattered, it->normal) >= 0.0f) != facing.outside)
-        return reflect(direction, it->normal, -dot(direction, it->normal));
+    if (material->kind == MATERIAL_CONDUCTOR)
+        *direction = scatter_conductor(scene, material, it, *direction, weight);
 #endif
-    return scattered;
+    return true;
 }
-#endif
 
 #endif

@@ -9,19 +9,40 @@
 
 // What the scene calls for (host/render/effects.h); an effect that is off leaves no code.
 #ifndef HAS_DIELECTRIC
-#define HAS_DIELECTRIC 0  // a smooth dielectric
+#define HAS_DIELECTRIC 0
 #endif
 #ifndef HAS_DISPERSION
 #define HAS_DISPERSION 0  // a dielectric whose index depends on the wavelength: paths may keep one slot
 #endif
 #ifndef HAS_CONDUCTOR
-#define HAS_CONDUCTOR 0  // a smooth conductor: camera paths may be coloured
+#define HAS_CONDUCTOR 0
 #endif
 #ifndef HAS_FILM
 #define HAS_FILM 0  // a thin film: paths may be coloured
 #endif
 #ifndef HAS_ABSORBING_FILM
 #define HAS_ABSORBING_FILM 0  // a film with a layer that absorbs
+#endif
+#ifndef HAS_COATED_DIFFUSE
+#define HAS_COATED_DIFFUSE 0  // a film on a diffuse surface
+#endif
+#ifndef HAS_ROUGH
+#define HAS_ROUGH 0  // a rough dielectric or conductor
+#endif
+#ifndef HAS_ROUGH_PHOTONS
+#define HAS_ROUGH_PHOTONS 0  // one that is rough enough to take photons (SurfaceMaterial::takes_photons)
+#endif
+#ifndef HAS_NEARLY_SPECULAR
+#define HAS_NEARLY_SPECULAR 0  // one that is not
+#endif
+#ifndef HAS_ANISOTROPIC
+#define HAS_ANISOTROPIC 0  // one whose roughness depends on the direction
+#endif
+#ifndef HAS_TEXTURE
+#define HAS_TEXTURE 0  // a texture in use
+#endif
+#ifndef HAS_UV
+#define HAS_UV 0  // surface coordinates u and v: for textures mapped by them and for HAS_ANISOTROPIC
 #endif
 #ifndef HAS_SHADING_NORMALS
 #define HAS_SHADING_NORMALS 0  // a mesh with vertex normals
@@ -69,10 +90,10 @@
 #define SEQUENCE_RANDOM 0  // 1: u is a new random number in each pass and set (the paper); 0: stratified golden ratio
 #endif
 
-// Photons keep the flux of every wavelength beside XYZ: needed where camera paths may depend on the wavelength.
-#define STORE_SPECTRAL_FLUX (HAS_DISPERSION || HAS_CONDUCTOR)
 // Camera paths may carry a throughput of its own for every wavelength.
-#define COLOURED_EYE HAS_CONDUCTOR
+#define COLOURED_EYE (HAS_CONDUCTOR || HAS_FILM || HAS_ROUGH)
+// Photons keep the flux of every wavelength beside XYZ: needed where camera paths may depend on the wavelength.
+#define STORE_SPECTRAL_FLUX (HAS_DISPERSION || COLOURED_EYE)
 
 // Vertices after which a path ends.
 #ifndef MAX_DEPTH

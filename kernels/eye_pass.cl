@@ -1,8 +1,7 @@
 // Step 2: one camera path per pixel, through specular surfaces to the first diffuse one, which becomes the pixel's visible
 // point. Emission seen on the way and, unless DIRECT_PHOTONS, direct light at the visible point add to the pixel at once.
 #define PATH_SPECTRUM COLOURED_EYE
-#include "bsdf.h"
-#include "lights.h"
+#include "direct_light.h"
 
 // Dimensions of a pixel's low-discrepancy sequence over the passes.
 #define EYE_FILM s01
@@ -26,39 +25,125 @@ void camera_ray(const global SceneConstants* c, float2 raster, float2 u_lens, fl
     *direction = unit_vector(*direction);
 }
 
-// XYZ of throughput · spectrum[first] · spectrum[second], the second one left out if negative.
-float3 weighted_xyz(const Scene* scene, const PathWeight* weight, int first, int second) {
-    const global float* a = spectrum_row(scene->pass_table, first);
-    const global float* b = spectrum_row(scene->pass_table, max(second, 0));
-    if (weight->slot >= 0) {
-        const float value = a[weight->slot] * (second >= 0 ? b[weight->slot] : 1.0f);
-        return weight->scale * value * slot_weight(scene->pass_table, weight->slot);
-    }
-    Spectrum product;
-    for (int i = 0; i < BLOCKS; ++i) {
-        product.block[i] = vloadv(i, a);
-        if (second >= 0)
-            product.block[i] *= vloadv(i, b);
-#if PATH_SPECTRUM
-        product.block[i] *= weight->spectrum.block[i];
+// A camera path on its way.
+typedef struct EyePath {
+    float3 origin, direction;
+    PathWeight weight;
+    float3 radiance;  // XYZ gathered so far
+    float pdf;        // [1/sr] with which a nearly specular surface chose the direction; 0 after any other, and at the camera
+    float cosine;     // between the direction and that surface's normal
+    bool both_sides;  // whether it looks for light on both of its sides
+} EyePath;
+
+#if HAS_AREA_LIGHT || HAS_INFINITE_LIGHT
+// Adds what a light emits along the path, in which the surface before has had its share already if it sampled the light with
+// light_pdf (see rough_direct_light).
+void add_emission(const Scene* scene, const global SceneLight* light, float light_pdf, EyePath* path) {
+    const float share = path->pdf > 0.0f ? path->pdf / (path->pdf + light_pdf) : 1.0f;
+    path->radiance += share * light->scale * weighted_xyz(scene, &path->weight, light->spectrum, -1);
+}
 #endif
-    }
-    return weight->scale * spectrum_to_xyz(scene->pass_table, &product);
+
+void see_nothing(const Scene* scene, EyePath* path) {
+#if HAS_INFINITE_LIGHT
+    const global SceneLight* light = scene->lights + scene->constants->infinite_light;
+    float light_pdf = 0.0f;
+#if HAS_NEARLY_SPECULAR
+    light_pdf = infinite_light_pdf(light, path->cosine, path->both_sides);
+#endif
+    add_emission(scene, light, light_pdf, path);
+#endif
 }
 
-float3 direct_light(const Scene* scene, const Interaction* it, float3 n, int reflectance, const PathWeight* weight,
-                    float u_light, float2 u_point) {
-    const int chosen = choose_light(scene, u_light);
-    const DirectLight light = sample_direct(scene->lights + chosen, it, n, u_point);
-    // Negated, so that a NaN goes on to the film, which counts it.
-    if (light.irradiance <= 0.0f || is_occluded(scene, light.origin, light.direction, light.t_max))
-        return 0.0f;
-    return INV_PI * light.irradiance * weighted_xyz(scene, weight, light.spectrum, reflectance);
+void see_emission(const Scene* scene, const Interaction* it, float distance, EyePath* path) {
+#if HAS_AREA_LIGHT
+    if (it->light < 0)
+        return;
+    const global SceneLight* light = scene->lights + it->light;
+    const float cosine = dot(path->direction, it->normal);
+    if (!light->two_sided && cosine >= 0.0f)
+        return;
+    float light_pdf = 0.0f;
+#if HAS_NEARLY_SPECULAR
+    light_pdf = area_light_pdf(light, distance * distance, fabs(cosine));
+#endif
+    add_emission(scene, light, light_pdf, path);
+#endif
 }
+
+// The visible point of a pixel, where its path ended, and what else the gather needs to know of it.
+typedef struct EyeEnd {
+    VisiblePoint point;
+    VisibleSurface surface;
+} EyeEnd;
+
+void make_visible_point(const Interaction* it, float3 n, int slot, EyeEnd* end) {
+    end->point.x = it->point.x;
+    end->point.y = it->point.y;
+    end->point.z = it->point.z;
+    end->point.normal = pack_normal(n);
+    end->point.slot = slot;
+    end->surface.material = -1;
+}
+
+// At a diffuse surface; returns whether the path goes on, reflected by a film.
+bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, float u_lobe, float u_light,
+                  float2 u_point, EyePath* path, EyeEnd* end) {
+    float cosine;
+    const float3 n = facing_normal(it, -path->direction, &cosine).normal;
+#if HAS_COATED_DIFFUSE
+    if (material->film_layers > 0) {
+        const InterfaceOptics optics = interface_optics(scene, material, film_thickness(scene, material, it), true, cosine,
+                                                        path->weight.slot);
+        const float probability = reflection_probability(&path->weight, &optics);
+        if (u_lobe < probability) {
+            multiply_weight(&path->weight, &optics.reflected, 1.0f / probability);
+            path->direction = reflect(path->direction, n, cosine);
+            path->pdf = 0.0f;
+            return true;
+        }
+        multiply_weight(&path->weight, &optics.transmitted, 1.0f / (1.0f - probability));
+    }
+#endif
+#if !DIRECT_PHOTONS
+    path->radiance += diffuse_direct_light(scene, material, it, n, &path->weight, u_light, u_point);
+#endif
+    make_visible_point(it, n, path->weight.slot, end);
+    return false;
+}
+
+#if HAS_ROUGH
+// At a rough surface, before it scatters the path; returns whether the path goes on.
+bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, int slot, float u_light,
+                float2 u_point, EyePath* path, EyeEnd* end) {
+#if HAS_DISPERSION
+    if (material->dispersive && path->weight.slot < 0)
+        keep_slot(&path->weight, slot);
+#endif
+    float cosine;
+    const Facing facing = facing_normal(it, -path->direction, &cosine);
+    const Frame frame = surface_frame(it, facing.normal);
+    float3 wo = frame_from_world(&frame, -path->direction);
+    wo.z = cosine;
+    // Photons bring the light to a surface that takes them in the paper's version; no photons, no other way.
+    if (!DIRECT_PHOTONS || !material->takes_photons)
+        path->radiance += rough_direct_light(scene, material, it, &frame, wo, facing.outside, &path->weight, u_light, u_point);
+    if (!material->takes_photons)
+        return true;
+    make_visible_point(it, facing.normal, path->weight.slot, end);
+    end->surface.material = it->material;
+    end->surface.outgoing = pack_normal(-path->direction);
+    end->surface.tangent = pack_normal(frame.s);
+    end->surface.thickness = film_thickness(scene, material, it);
+    end->surface.outside = facing.outside;
+    return false;
+}
+#endif
 
 // One work-item per pixel of the region. radius0[pixel] is the initial radius, times radius_scale that of this pass.
 kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float* radius0, float radius_scale,
-                     const global FilmPixel* film, global VisiblePoint* visible_points, global float* eye_spectra) {
+                     const global FilmPixel* film, global VisiblePoint* visible_points, global VisibleSurface* visible_surfaces,
+                     global float* eye_spectra) {
     SCENE_FROM_PARAMETERS;
     const uint pixel = (uint)get_global_id(0);
     const uint x = (uint)constants->region_x + pixel % (uint)constants->region_width;
@@ -73,78 +158,70 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
     // Over W passes a pixel visits every slot once; neighbours begin at different ones.
     const int slot = (int)(((scramble.s0 >> 8) + pass) % (uint)W);
 
-    float3 origin, direction;
-    camera_ray(constants, (float2)((float)x, (float)y) + u.EYE_FILM, u.EYE_LENS, &origin, &direction);
-
-    PathWeight weight;
-    weight.scale = 1.0f;
-    weight.slot = SLOT_ALL;
+    EyePath path;
+    camera_ray(constants, (float2)((float)x, (float)y) + u.EYE_FILM, u.EYE_LENS, &path.origin, &path.direction);
+    path.weight.scale = 1.0f;
+    path.weight.slot = SLOT_ALL;
 #if PATH_SPECTRUM
     for (int b = 0; b < BLOCKS; ++b)
-        weight.spectrum.block[b] = 1.0f;
+        path.weight.spectrum.block[b] = 1.0f;
 #endif
-    float3 radiance = 0.0f;
-    VisiblePoint point;
-    point.slot = SLOT_NONE;
+    path.radiance = 0.0f;
+    path.pdf = 0.0f;
+    path.cosine = 1.0f;
+    path.both_sides = false;
+    EyeEnd end;
+    end.point.slot = SLOT_NONE;
     for (int depth = 0; depth < MAX_DEPTH; ++depth) {
-        const Hit hit = closest_hit(&scene, origin, direction);
+        const Hit hit = closest_hit(&scene, path.origin, path.direction);
         if (hit.triangle < 0) {
-#if HAS_INFINITE_LIGHT
-            const global SceneLight* light = lights + constants->infinite_light;
-            radiance += light->scale * weighted_xyz(&scene, &weight, light->spectrum, -1);
-#endif
+            see_nothing(&scene, &path);
             break;
         }
         const Interaction it = make_interaction(&scene, &hit);
-#if HAS_AREA_LIGHT
-        if (it.light >= 0) {
-            const global SceneLight* light = lights + it.light;
-            if (light->two_sided || dot(direction, it.normal) < 0.0f)
-                radiance += light->scale * weighted_xyz(&scene, &weight, light->spectrum, -1);
-        }
-#endif
+        see_emission(&scene, &it, hit.t, &path);
         const global SurfaceMaterial* material = materials + it.material;
+        float3 v;
+        v.x = depth == 0 ? u.EYE_FIRST_SCATTER : random_step(scramble.s2 + pass * 0x632be5abu, (uint)depth);
+#if HAS_ROUGH
+        v.y = random_step(scramble.s0 + pass * 0x632be5abu, (uint)depth);
+        v.z = random_step(scramble.s1 + pass * 0x632be5abu, (uint)depth);
+#endif
         if (material->kind == MATERIAL_DIFFUSE) {
-            float cosine;
-            const float3 n = facing_normal(&it, -direction, &cosine).normal;
-#if !DIRECT_PHOTONS
-            radiance += direct_light(&scene, &it, n, material->reflectance, &weight, u.EYE_LIGHT,
-                                     u.EYE_LIGHT_POINT);
+            if (!meet_diffuse(&scene, material, &it, v.x, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))
+                break;
+        } else {
+#if HAS_ROUGH
+            if (material->alpha_u > 0.0f &&
+                !meet_rough(&scene, material, &it, slot, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))
+                break;
 #endif
-            point.x = it.point.x;
-            point.y = it.point.y;
-            point.z = it.point.z;
-            point.normal = pack_normal(n);
-            point.slot = weight.slot;
-            break;
+            if (!scatter(&scene, material, &it, &path.direction, v, slot, true, &path.weight, &path.pdf))
+                break;
+#if HAS_NEARLY_SPECULAR
+            path.cosine = fabs(dot(path.direction, it.shading_normal));
+            path.both_sides = material->kind == MATERIAL_DIELECTRIC;
+#endif
         }
-#if HAS_DIELECTRIC
-        if (material->kind == MATERIAL_DIELECTRIC) {
-            const float v = depth == 0 ? u.EYE_FIRST_SCATTER
-                                       : random_step(scramble.s2 + pass * 0x632be5abu, (uint)depth);
-            direction = scatter_dielectric(&scene, material, &it, direction, v, slot, true, &weight);
-        }
-#endif
-#if HAS_CONDUCTOR
-        if (material->kind == MATERIAL_CONDUCTOR)
-            direction = scatter_conductor(&scene, material, &it, direction, &weight);
-#endif
-        origin = leave_surface(&it, direction);
+        path.origin = leave_surface(&it, path.direction);
     }
-    point.throughput = weight.scale;
-    point.direct_x = radiance.x;
-    point.direct_y = radiance.y;
-    point.direct_z = radiance.z;
+    end.point.throughput = path.weight.scale;
+    end.point.direct_x = path.radiance.x;
+    end.point.direct_y = path.radiance.y;
+    end.point.direct_z = path.radiance.z;
 #if RADIUS_STATISTICS
-    point.radius = film[pixel].statistics_radius;
+    end.point.radius = film[pixel].statistics_radius;
 #else
-    point.radius = radius0[pixel] * radius_scale;
+    end.point.radius = radius0[pixel] * radius_scale;
 #endif
-    point.camera_rays = ray_counts.closest;
-    point.shadow_rays = ray_counts.any;
-    visible_points[pixel] = point;
+    end.point.camera_rays = ray_counts.closest;
+    end.point.shadow_rays = ray_counts.any;
+    visible_points[pixel] = end.point;
+#if HAS_ROUGH_PHOTONS
+    visible_surfaces[pixel] = end.surface;
+#endif
 #if COLOURED_EYE
     for (int b = 0; b < BLOCKS; ++b)
-        vstorev(weight.spectrum.block[b], b, eye_spectra + (size_t)pixel * W_PADDED);
+        vstorev(path.weight.spectrum.block[b], b, eye_spectra + (size_t)pixel * W_PADDED);
 #endif
 }

@@ -1,7 +1,11 @@
-// Step 5: at each visible point, the photons within its radius on the same surface side: Σ_w c_w T_w f_w Φ_w.
+// Step 5: at each visible point, the photons within its radius on the same surface: Σ_w c_w T_w f_w Φ_w.
 #include "grid.h"
 #include "sampling.h"
 #include "spectrum.h"
+#if HAS_ROUGH_PHOTONS
+#define PATH_SPECTRUM 1
+#include "interface.h"
+#endif
 
 // Photons on surfaces that are turned further away than this do not count: round a corner, or on the back of a sheet.
 #define SMALLEST_NORMAL_COSINE 0.5f
@@ -27,12 +31,70 @@ typedef struct Search {
     bool rows_share_buckets;
     float radius2, scale;
     int slot;
+#if HAS_ROUGH_PHOTONS
+    const Scene* scene;  // its materials, films and spectra
+    const global PhotonSurface* photon_surfaces;
+    VisibleSurface surface;
+    Frame frame;       // of a rough surface
+    float3 outgoing;   // in that frame
+#endif
 } Search;
+
+#if HAS_ROUGH_PHOTONS
+// A photon on a rough surface: the BSDF for its direction and the visible point's, for each wavelength.
+void add_rough_photon(const Search* search, uint index, Gathered* gathered) {
+    const global Photon* photon = search->photons + index;
+    const global SurfaceMaterial* material = search->scene->materials + search->surface.material;
+    const bool outside = search->surface.outside;
+    // Of the path's wavelengths and the photon's.
+    const int slot = search->slot >= 0 ? search->slot : photon->slot;
+    if (photon->slot >= 0 && photon->slot != slot)
+        return;
+    const float3 incident = frame_from_world(&search->frame, unpack_normal(search->photon_surfaces[index].incident));
+    const RoughScattering rough =
+        evaluate_rough(search->scene, material, search->surface.thickness, outside, search->outgoing, incident, slot);
+    if (rough.geometry <= 0.0f)
+        return;
+    ++gathered->count;
+    const bool reflected = incident.z > 0.0f;
+    const Spectrum* share = reflected ? &rough.optics.reflected : &rough.optics.transmitted;
+    float factor = rough.geometry;
+    if (!reflected) {
+        const float inverse_eta = inverse_relative_eta(search->scene, material, outside, slot);
+        factor *= inverse_eta * inverse_eta;  // radiance
+    }
+    if (photon->slot >= 0) {
+        const float throughput = search->slot >= 0 ? 1.0f : search->eye_spectrum[slot];
+        gathered->flux += factor * spectrum_at(share, slot) * throughput * (float3)(photon->flux_x, photon->flux_y, photon->flux_z);
+        return;
+    }
+    const global float* spectrum = search->photon_spectra + (size_t)index * W_PADDED;
+    if (slot >= 0) {
+        gathered->single += factor * spectrum_at(share, slot) * spectrum[slot];
+    } else {
+        for (int b = 0; b < BLOCKS; ++b)
+            gathered->spectrum.block[b] += factor * share->block[b] * vloadv(b, spectrum);
+    }
+}
+#endif
 
 bool normals_agree(uint packed, float3 normal) {
     const float3 direction = unpack_direction(packed);
     const float cosine = dot(direction, normal); // times the length of direction
     return cosine > 0.0f && cosine * cosine >= SMALLEST_NORMAL_COSINE * SMALLEST_NORMAL_COSINE * dot(direction, direction);
+}
+
+// Whether a photon lies on the visible point's surface, as far as normals and materials tell, on the side that counts: through a
+// rough surface light may also come from the other one.
+bool is_on_surface(const Search* search, uint index) {
+    const uint packed = search->photons[index].normal;
+#if HAS_ROUGH_PHOTONS
+    if (search->photon_surfaces[index].material != search->surface.material)
+        return false;
+    if (search->surface.material >= 0 && normals_agree(packed, -search->normal))
+        return true;
+#endif
+    return packed == search->packed_normal || normals_agree(packed, search->normal);
 }
 
 void add_photon(const Search* search, uint index, Gathered* gathered) {
@@ -84,7 +146,13 @@ __attribute__((always_inline)) void add_range(const Search* search, uint begin, 
             if (cell.y != row->y || cell.z != row->z)
                 continue;
         }
-        if (photon->normal == search->packed_normal || normals_agree(photon->normal, search->normal))
+        if (!is_on_surface(search, index))
+            continue;
+#if HAS_ROUGH_PHOTONS
+        if (search->surface.material >= 0)
+            add_rough_photon(search, index, gathered);
+        else
+#endif
             add_photon(search, index, gathered);
     }
 }
@@ -106,7 +174,9 @@ bool share_buckets(const Row* rows, int count, uint span) {
 kernel void gather(const global SceneConstants* constants, const global float* pass_table,
                    const global VisiblePoint* visible_points, const global float* eye_spectra, const global Photon* photons,
                    const global float* photon_spectra, const global uint2* pairs, const global uint* bucket_begin,
-                   const global uint* largest_radius, uint paths_per_pass, global float4* gathered_flux) {
+                   const global uint* largest_radius, uint paths_per_pass, const global VisibleSurface* visible_surfaces,
+                   const global PhotonSurface* photon_surfaces, const global SurfaceMaterial* materials,
+                   const global SceneFilmLayer* film_layers, global float4* gathered_flux) {
     const uint pixel = (uint)get_global_id(0);
     const VisiblePoint point = visible_points[pixel];
     if (point.slot == SLOT_NONE) {
@@ -125,6 +195,21 @@ kernel void gather(const global SceneConstants* constants, const global float* p
     search.radius2 = point.radius * point.radius;
     search.scale = cell_scale(largest_radius);
     search.slot = point.slot;
+#if HAS_ROUGH_PHOTONS
+    Scene scene;
+    scene.materials = materials;
+    scene.film_layers = film_layers;
+    scene.pass_table = pass_table;
+    search.scene = &scene;
+    search.photon_surfaces = photon_surfaces;
+    search.surface = visible_surfaces[pixel];
+    if (search.surface.material >= 0) {
+        search.frame.n = search.normal;
+        search.frame.s = unpack_normal(search.surface.tangent);
+        search.frame.t = cross(search.frame.n, search.frame.s);
+        search.outgoing = frame_from_world(&search.frame, unpack_normal(search.surface.outgoing));
+    }
+#endif
 
     Gathered gathered;
     gathered.flux = 0.0f;

@@ -106,29 +106,56 @@ typedef struct DirectLight {
     float irradiance;   // at the point with normal n, over the pdf: factor of the light's spectrum; 0 if none
     float t_max;
     int spectrum;
+#if HAS_NEARLY_SPECULAR
+    float pdf;          // [1/sr] of the direction, that of choosing the light included; 0: no ray can meet it by chance
+#endif
 } DirectLight;
 
-// Samples light from one source, chosen by choose_light; n is the shading normal on the side to light.
-DirectLight sample_direct(const global SceneLight* light, const Interaction* it, float3 n, float2 u) {
+#if HAS_NEARLY_SPECULAR
+// DirectLight::pdf for a ray that met an area light at a distance, |cosine| of the angle there.
+float area_light_pdf(const global SceneLight* light, float distance2, float cosine) {
+    return light->probability * distance2 / (light->area * cosine);
+}
+// And for one that met none, where the surface that it left faces it at a cosine.
+float infinite_light_pdf(const global SceneLight* light, float cosine, bool both_sides) {
+    return light->probability * INV_PI * cosine * (both_sides ? 0.5f : 1.0f);
+}
+#endif
+
+// Samples light from one source, chosen by choose_light; n is the shading normal on the side to light, unless light from both
+// sides counts.
+DirectLight sample_direct(const global SceneLight* light, const Interaction* it, float3 n, bool both_sides, float2 u) {
     DirectLight d;
     d.spectrum = light->spectrum;
     d.irradiance = light->scale / light->probability;
+#if HAS_NEARLY_SPECULAR
+    d.pdf = 0.0f;
+#endif
 #if HAS_DISTANT_LIGHT
     if (light->kind == LIGHT_DISTANT) {
         d.direction = -light_direction(light);
         d.origin = leave_surface(it, d.direction);
         d.t_max = INFINITE_DISTANCE;
-        d.irradiance *= max(dot(d.direction, n), 0.0f);
+        d.irradiance *= max(both_sides ? fabs(dot(d.direction, n)) : dot(d.direction, n), 0.0f);
         return d;
     }
 #endif
 #if HAS_INFINITE_LIGHT
     if (light->kind == LIGHT_INFINITE) {
+        if (both_sides) {
+            d.irradiance *= 2.0f;
+            n = u.x < 0.5f ? n : -n;
+            u.x = fmod(2.0f * u.x, 1.0f);
+        }
         const Frame frame = make_frame(n);
-        d.direction = frame_to_world(&frame, sample_cosine_hemisphere(u));
+        const float3 sampled = sample_cosine_hemisphere(u);
+        d.direction = frame_to_world(&frame, sampled);
         d.origin = leave_surface(it, d.direction);
         d.t_max = INFINITE_DISTANCE;
         d.irradiance *= PI;  // cos θ / (cos θ / π)
+#if HAS_NEARLY_SPECULAR
+        d.pdf = infinite_light_pdf(light, sampled.z, both_sides);
+#endif
         return d;
     }
 #endif
@@ -140,7 +167,8 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
     const float3 towards = target - it->point;
     const float inverse_distance = 1.0f / sqrt(dot(towards, towards));
     const float cos_light = -dot(towards, light_direction(light)) * inverse_distance;
-    d.irradiance *= max(dot(towards, n), 0.0f) * inverse_distance * inverse_distance * inverse_distance;
+    const float facing = both_sides ? fabs(dot(towards, n)) : dot(towards, n);
+    d.irradiance *= max(facing, 0.0f) * inverse_distance * inverse_distance * inverse_distance;
 #if HAS_SPOT_LIGHT
     if (light->kind == LIGHT_SPOT)
         d.irradiance *= spot_falloff(cos_light, light->cos_total_width, light->cos_falloff_start);
@@ -148,6 +176,9 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
 #if HAS_AREA_LIGHT
     if (light->kind == LIGHT_AREA) {
         d.irradiance *= light->area * (light->two_sided ? fabs(cos_light) : max(cos_light, 0.0f));
+#if HAS_NEARLY_SPECULAR
+        d.pdf = area_light_pdf(light, dot(towards, towards), fabs(cos_light));
+#endif
         target = offset_from_triangle(target, cos_light >= 0.0f ? light_direction(light) : -light_direction(light),
                                       light->extent);
     }

@@ -3,18 +3,21 @@
 // Microfacet-Based BRDFs").
 //
 // Everything is in the local frame, z along the surface's normal; alpha = (α_u, α_v) > 0 is the roughness along x and
-// y, two equal ones are the isotropic distribution. wo and wi are unit vectors that point away from the surface. wo lies
+// y, two equal ones are the isotropic distribution. wo and wi are unit vectors that point away from the surface. wo is
 // on the normal's side, wo.z >= 0 (who comes from below turns the frame round); wi.z > 0 is reflection, wi.z < 0
 // transmission. Microfacet normals m are unit vectors with m.z >= 0. eta is the index on wi's side over that on wo's
 // side, n_i/n_o, and not 1: between equal indices there is no interface.
 //
-// Masking is written with the length of the stretched vector, |(α_u x, α_v y, z)| = |z| √(1 + α² tan²θ), so that nothing
-// divides by a cosine and no difference of nearly equal numbers is left: float keeps five digits from α = 1e-4 to 1, up
-// to grazing angles.
+// Masking is written with the length of the stretched vector, |(α_u x, α_v y, z)| = |z| √(1 + α² tan²θ): nothing then
+// divides by a cosine, and no difference of nearly equal numbers is left. float keeps five digits from α = 1e-4 to 1,
+// up to grazing angles.
 #ifndef TRISTIM_MICROFACET_H
 #define TRISTIM_MICROFACET_H
 
 #include "sampling.h"
+
+// Directions nearer to the horizon scatter nothing: squares of half vectors could underflow, and values overflow.
+#define GGX_HORIZON 1e-18f
 
 // D(m) [1/sr], with ∫ D(m) m.z dm = 1 (Walter et al. 2007, eq. 33; for two roughnesses Heitz 2014).
 float ggx_distribution(float3 m, float2 alpha) {
@@ -55,22 +58,23 @@ float ggx_masking_shadowing(float3 wo, float3 wi, float2 alpha) {
     return 2.0f * fabs(wo.z) * fabs(wi.z) / ggx_correlated_sum(wo, wi, alpha);
 }
 
-// G2 / G1(wo), in [0, 1]: the weight, beside Fresnel's share, of a direction that was reflected or refracted at a sampled
-// visible normal of wo. The caller drops directions that came out on the wrong side.
+// G2 / G1(wo), in [0, 1]: the weight, beside Fresnel's share, of a direction that was reflected or refracted at a
+// sampled visible normal of wo. The caller drops directions that came out on the wrong side.
 float ggx_visible_normal_weight(float3 wo, float3 wi, float2 alpha) {
     return fabs(wi.z) * (fabs(wo.z) + ggx_stretched_length(wo, alpha)) / ggx_correlated_sum(wo, wi, alpha);
 }
 
 // A facet's normal with the pdf below; u in [0, 1)². Stretching turns the surface into a hemisphere, whose visible
 // normals are half vectors of wo and the directions of a spherical cap (Dupuy & Benyoub 2023, "Sampling Visible GGX
-// Normals with Spherical Caps"). The cap's z, (1 - u.x)(1 + v.z) - v.z, appears only in sums that do not cancel.
+// Normals with Spherical Caps"). The cap's z is (1 - u.x)(1 + v.z) - v.z, which appears only in sums without
+// cancellation. Next to -v, rounding, of 41 units at most, could turn the half vector away from wo; the cap's points
+// come nearer to the axis by 64. So wo·m >= 0 but for the rounding of m and of the product, 2^-19: callers clamp it.
 float3 sample_ggx_visible_normal(float3 wo, float2 alpha, float2 u) {
     const float3 v = unit_vector((float3)(wo.xy * alpha, wo.z));
-    const float above_lowest = (1.0f - u.x) * (1.0f + v.z);
-    const float below_highest = u.x * (1.0f + v.z);
-    const float sine = sqrt(below_highest * (above_lowest + max(1.0f - v.z, 0.0f)));
-    const float2 half_xy = sine * cos_sin_turns(u.y) + v.xy;
-    return unit_vector((float3)(half_xy * alpha, above_lowest));
+    const float top = 1.0f + v.z, rest = 1.0f - u.x;
+    const float sine = sqrt(u.x * (rest * top * top + v.x * v.x + v.y * v.y));
+    const float2 half_xy = (1.0f - 0x1p-18f) * sine * cos_sin_turns(u.y) + v.xy;
+    return unit_vector((float3)(half_xy * alpha, rest * top));
 }
 
 // G1(wo) max(0, wo·m) D(m) / wo.z [1/sr]: the density of the facets that wo sees (Heitz 2014).
@@ -107,7 +111,7 @@ float ggx_refraction_pdf(float3 wo, float3 wi, float3 m, float eta, float2 alpha
 // The rough surface's BRDF [1/sr] but for the Fresnel reflectance at cosine wo·m: D G2 / (4 wo.z wi.z) (Walter et al.
 // 2007, eq. 20). 0 if wo and wi are not both above; *m, the facet, is then not to be used.
 float ggx_reflection(float3 wo, float3 wi, float2 alpha, float3* m) {
-    if (!(wo.z > 0.0f && wi.z > 0.0f))
+    if (!(wo.z > GGX_HORIZON && wi.z > GGX_HORIZON))
         return 0.0f;
     *m = reflection_half_vector(wo, wi);
     return 0.5f * ggx_distribution(*m, alpha) / ggx_correlated_sum(wo, wi, alpha);
@@ -119,7 +123,7 @@ float ggx_reflection(float3 wo, float3 wi, float2 alpha, float3* m) {
 // (Veach 1997, section 5.2). So f(wo, wi, eta) = eta² f(wi, wo, 1/eta), the frame turned round. 0 if no facet refracts
 // wo to wi; *m, the facet, is then not to be used.
 float ggx_refraction(float3 wo, float3 wi, float eta, float2 alpha, float3* m) {
-    if (!(wo.z > 0.0f && wi.z < 0.0f))
+    if (!(wo.z > GGX_HORIZON && wi.z < -GGX_HORIZON))
         return 0.0f;
     *m = refraction_half_vector(wo, wi, eta);
     const float wo_m = dot(wo, *m), wi_m = dot(wi, *m);

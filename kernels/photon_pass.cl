@@ -1,5 +1,5 @@
-// Step 3: photon paths that carry the fluxes of W wavelengths. Each diffuse surface on the way stores a photon, from the
-// path's second hit on, since direct light is sampled at the visible points (from the first with DIRECT_PHOTONS).
+// Step 3: photon paths that carry the fluxes of W wavelengths. Each diffuse or rough enough surface on the way stores a photon,
+// from the path's second hit on, since direct light is sampled at the visible points (from the first with DIRECT_PHOTONS).
 #define PATH_SPECTRUM 1
 #include "bsdf.h"
 #include "lights.h"
@@ -14,106 +14,177 @@
 // Where a work-item puts its photons.
 typedef struct PhotonStore {
     global Photon* photons;
+    global PhotonSurface* surfaces;
     global float* spectra;
     uint next, end;
 } PhotonStore;
 
-// Stores what a diffuse surface reflects of the photon: flux · reflectance / π. Past the end it only counts; the host then
-// makes room and repeats the pass.
-void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it, float3 n, int reflectance,
-                  const PathWeight* weight) {
+// Stores a photon that arrived along `direction`; flux is what a visible point is to add up: see the structs. Past the end it only
+// counts; the host then makes room and repeats the pass.
+void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it, float3 n, float3 direction, bool diffuse,
+                  const PathWeight* flux) {
     const uint index = store->next++;
     if (index >= store->end)
         return;
-    const global float* row = spectrum_row(scene->pass_table, reflectance);
-    float3 flux;
-    if (weight->slot >= 0) {
-        const float reflected = INV_PI * weight->scale * row[weight->slot];
-        flux = reflected * slot_weight(scene->pass_table, weight->slot);
+    float3 xyz;
+    if (flux->slot >= 0) {
+        xyz = flux->scale * slot_weight(scene->pass_table, flux->slot);
     } else {
-        Spectrum reflected;
+        Spectrum scaled;
         for (int b = 0; b < BLOCKS; ++b) {
-            reflected.block[b] = INV_PI * weight->scale * weight->spectrum.block[b] * vloadv(b, row);
+            scaled.block[b] = flux->scale * flux->spectrum.block[b];
 #if STORE_SPECTRAL_FLUX
-            vstorev(reflected.block[b], b, store->spectra + (size_t)index * W_PADDED);
+            vstorev(scaled.block[b], b, store->spectra + (size_t)index * W_PADDED);
 #endif
         }
-        flux = spectrum_to_xyz(scene->pass_table, &reflected);
+        xyz = spectrum_to_xyz(scene->pass_table, &scaled);
     }
-    const Photon photon = {it->point.x, it->point.y, it->point.z, pack_normal(n), flux.x, flux.y, flux.z, weight->slot};
+    const Photon photon = {it->point.x, it->point.y, it->point.z, pack_normal(n), xyz.x, xyz.y, xyz.z, flux->slot};
     store->photons[index] = photon;
+#if HAS_ROUGH_PHOTONS
+    const PhotonSurface surface = {diffuse ? -1 : it->material, pack_normal(-direction)};
+    store->surfaces[index] = surface;
+#endif
 }
 
-// Multiplies by the reflectance and ends the path by Russian roulette in proportion to it, so that the path's flux summed
-// over its wavelengths stays the same. Returns whether the path goes on.
-bool reflect_diffusely(const Scene* scene, int reflectance, float u, PathWeight* weight) {
-    const global float* row = spectrum_row(scene->pass_table, reflectance);
-    if (weight->slot >= 0)
-        return u < row[weight->slot];
-    const float before = spectrum_sum(&weight->spectrum);
-    for (int b = 0; b < BLOCKS; ++b)
-        weight->spectrum.block[b] *= vloadv(b, row);
-    const float survival = spectrum_sum(&weight->spectrum) / before;
-    weight->scale /= survival;
-    return u < survival;
+// The path's weight as a diffuse surface reflects it, π times the BRDF; `coat` is what a film on it transmits of the path.
+PathWeight reflected_diffusely(const Scene* scene, const global SurfaceMaterial* material, float thickness, const Spectrum* coat,
+                               const PathWeight* weight) {
+    PathWeight reflected = *weight;
+#if HAS_COATED_DIFFUSE
+    if (material->film_layers > 0) {
+        const Spectrum body = body_reflectance(scene, material, thickness, weight->slot);
+        multiply_weight(&reflected, &body, 1.0f);
+        multiply_weight(&reflected, coat, 1.0f);
+        return reflected;
+    }
+#endif
+    const global float* row = spectrum_row(scene->pass_table, material->reflectance);
+    if (weight->slot >= 0) {
+        reflected.scale *= row[weight->slot];
+    } else {
+        for (int b = 0; b < BLOCKS; ++b)
+            reflected.spectrum.block[b] *= vloadv(b, row);
+    }
+    return reflected;
+}
+
+// A photon path on its way.
+typedef struct PhotonPath {
+    float3 origin, direction;
+    PathWeight weight;
+    bool bounced;  // off a diffuse surface
+} PhotonPath;
+
+// At a diffuse surface: stores a photon if it is to, and ends the path by Russian roulette in proportion to what is reflected, so
+// that the path's flux summed over its wavelengths stays the same. Returns whether the path goes on.
+bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, bool store_it, float u_lobe,
+                  float2 u_direction, PhotonPath* path, PhotonStore* store) {
+    float cosine;
+    const float3 n = facing_normal(it, -path->direction, &cosine).normal;
+    const float before = carried_total(&path->weight);
+    float mirrored = 0.0f;  // share of the flux that a film reflects
+    float thickness = 0.0f;
+    const Spectrum* coat = 0;
+#if HAS_COATED_DIFFUSE
+    InterfaceOptics optics;
+    if (material->film_layers > 0) {
+        thickness = film_thickness(scene, material, it);
+        optics = interface_optics(scene, material, thickness, true, cosine, path->weight.slot);
+        mirrored = carried_sum(&path->weight, &optics.reflected) / before;
+        coat = &optics.transmitted;
+    }
+#endif
+    PathWeight reflected = reflected_diffusely(scene, material, thickness, coat, &path->weight);
+    if (store_it) {
+        PathWeight flux = reflected;
+        flux.scale *= INV_PI;
+        store_photon(scene, store, it, n, path->direction, true, &flux);
+    }
+#if HAS_COATED_DIFFUSE
+    if (u_lobe < mirrored) {
+        multiply_weight(&path->weight, &optics.reflected, 1.0f / mirrored);
+        path->direction = reflect(path->direction, n, cosine);
+        return true;
+    }
+#endif
+    const Frame frame = make_frame(n);
+    const float3 sampled = sample_cosine_hemisphere(u_direction);
+    path->direction = frame_to_world(&frame, sampled);
+#if HAS_COATED_DIFFUSE
+    if (material->film_layers > 0) {
+        const Spectrum out = coat_transmittance(scene, material, thickness, sampled.z, reflected.slot);
+        multiply_weight(&reflected, &out, 1.0f);
+    }
+#endif
+    // With a film this may exceed what is left beside `mirrored`; the weight then makes up for it.
+    const float after = carried_total(&reflected) / before * (reflected.scale / path->weight.scale);
+    const float survival = min(after, 1.0f - mirrored);
+    path->weight = reflected;
+    path->weight.scale /= survival;
+    path->bounced = true;
+    return u_lobe < mirrored + survival;
 }
 
 // u is the path's point of the low-discrepancy sequence.
-void trace_photon(const Scene* scene, uint seed, uint pass, uint path, float8 u, PhotonStore* store) {
+void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, float8 u, PhotonStore* store) {
     const int chosen = choose_light(scene, u.PHOTON_LIGHT);
     const global SceneLight* light = scene->lights + chosen;
     const int slot = min((int)(u.PHOTON_SLOT * (float)W), W - 1);
 
     const Emission emission = sample_emission(scene, light, u.PHOTON_DIRECTION, u.PHOTON_POSITION);
-    float3 origin = emission.origin;
-    float3 direction = emission.direction;
-    PathWeight weight;
-    weight.scale = emission.power;
-    weight.slot = SLOT_ALL;
+    PhotonPath path;
+    path.origin = emission.origin;
+    path.direction = emission.direction;
+    path.bounced = false;
+    path.weight.scale = emission.power;
+    path.weight.slot = SLOT_ALL;
     for (int b = 0; b < BLOCKS; ++b)
-        weight.spectrum.block[b] = vloadv(b, spectrum_row(scene->pass_table, light->spectrum));
+        path.weight.spectrum.block[b] = vloadv(b, spectrum_row(scene->pass_table, light->spectrum));
+    if (carried_total(&path.weight) <= 0.0f)
+        return;  // all of the pass's wavelengths lie between the light's lines
 
-    const uint4 key = pcg4d((uint4)(path, STREAM_PHOTON, pass, seed));
-    bool bounced = false;
+    const uint4 key = pcg4d((uint4)(path_number, STREAM_PHOTON, pass, seed));
     for (int depth = 0; depth < MAX_DEPTH; ++depth) {
-        const Hit hit = closest_hit(scene, origin, direction);
+        const Hit hit = closest_hit(scene, path.origin, path.direction);
         if (hit.triangle < 0)
             return;
         const Interaction it = make_interaction(scene, &hit);
         const global SurfaceMaterial* material = scene->materials + it.material;
-        const float v = random_step(key.x, (uint)depth);
+        const bool store_it = depth > 0 || DIRECT_PHOTONS;
+        const float u_lobe = random_step(key.x, (uint)depth);
+        const float2 u_direction = path.bounced ? (float2)(random_step(key.y, (uint)depth), random_step(key.z, (uint)depth))
+                                                : u.PHOTON_FIRST_BOUNCE;
         if (material->kind == MATERIAL_DIFFUSE) {
-            float cosine;
-            const float3 n = facing_normal(&it, -direction, &cosine).normal;
-            if (depth > 0 || DIRECT_PHOTONS)
-                store_photon(scene, store, &it, n, material->reflectance, &weight);
-            if (!reflect_diffusely(scene, material->reflectance, v, &weight))
+            if (!meet_diffuse(scene, material, &it, store_it, u_lobe, u_direction, &path, store))
                 return;
-            const float2 u_bounce = bounced ? (float2)(random_step(key.y, (uint)depth), random_step(key.z, (uint)depth))
-                                            : u.PHOTON_FIRST_BOUNCE;
-            bounced = true;
-            const Frame frame = make_frame(n);
-            direction = frame_to_world(&frame, sample_cosine_hemisphere(u_bounce));
+        } else {
+#if HAS_ROUGH_PHOTONS
+            if (store_it && material->takes_photons) {
+                float cosine;
+                const float3 n = facing_normal(&it, -path.direction, &cosine).normal;
+                store_photon(scene, store, &it, n, path.direction, false, &path.weight);
+            }
+#endif
+            const float3 v = (float3)(u_lobe, u_direction);
+            float pdf;
+            if (!scatter(scene, material, &it, &path.direction, v, slot, false, &path.weight, &pdf))
+                return;
+#if HAS_ROUGH
+            path.bounced |= material->alpha_u > 0.0f;
+#endif
         }
-#if HAS_DIELECTRIC
-        if (material->kind == MATERIAL_DIELECTRIC)
-            direction = scatter_dielectric(scene, material, &it, direction, v, slot, false, &weight);
-#endif
-#if HAS_CONDUCTOR
-        if (material->kind == MATERIAL_CONDUCTOR)
-            direction = scatter_conductor(scene, material, &it, direction, &weight);
-#endif
-        origin = leave_surface(&it, direction);
+        path.origin = leave_surface(&it, path.direction);
     }
 }
 
 // One work-item per PATHS_PER_ITEM paths. It fills photons[item·capacity …] and says in item_counts[item] how many it
 // would have stored, which may be more than the capacity, and adds its rays to item_rays[item].
 kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_pass, uint capacity, global Photon* photons,
-                        global float* photon_spectra, global uint* item_counts, global uint* item_rays) {
+                        global PhotonSurface* photon_surfaces, global float* photon_spectra, global uint* item_counts, global uint* item_rays) {
     SCENE_FROM_PARAMETERS;
     const uint item = (uint)get_global_id(0);
-    PhotonStore store = {photons, photon_spectra, item * capacity, (item + 1u) * capacity};
+    PhotonStore store = {photons, photon_surfaces, photon_spectra, item * capacity, (item + 1u) * capacity};
     const uint first = item * PATHS_PER_ITEM;
     const uint last = min(first + PATHS_PER_ITEM, paths_per_pass);
     uint8 scramble;

@@ -25,6 +25,7 @@ Frame make_frame(float3 n) {
 }
 
 float3 frame_to_world(const Frame* frame, float3 v) { return v.x * frame->s + v.y * frame->t + v.z * frame->n; }
+float3 frame_from_world(const Frame* frame, float3 v) { return (float3)(dot(v, frame->s), dot(v, frame->t), dot(v, frame->n)); }
 
 // (cos, sin) of 2π·turns for turns in [0, 1]. The turn is cut into quarters exactly, and Taylor's series to the ninth power of
 // the angle's at most π/4 are right to 3e-8: the library's sincos spends most of its time on large arguments.

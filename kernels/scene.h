@@ -8,6 +8,7 @@
 #include "sampling.h"
 #include "shared_types.h"
 #include "spectrum.h"
+#include "texture.h"
 
 // Rays traced, by kind of query.
 typedef struct RayCounts {
@@ -19,8 +20,11 @@ typedef struct Scene {
     const global BvhNode* nodes;
     const global BvhLeaf* leaves;
     const global Triangle* triangles;
-    const global float* normals;
+    const global float* attributes;
     const global SurfaceMaterial* materials;
+    const global SceneFilmLayer* film_layers;
+    const global SceneTexture* textures;
+    const global float* texels;
     const global SceneLight* lights;
     const global float* light_cdf;  // light_count + 1 values, from 0 to 1
     const global float* pass_table;
@@ -34,13 +38,15 @@ typedef struct Scene {
 // and their body with SCENE_FROM_PARAMETERS.
 #define SCENE_PARAMETERS                                                                                               \
     const global SceneConstants *constants, const global BvhNode *nodes, const global BvhLeaf *leaves,                 \
-        const global Triangle *triangles, const global float *normals, const global SurfaceMaterial *materials,        \
+        const global Triangle *triangles, const global float *attributes, const global SurfaceMaterial *materials,     \
+        const global SceneFilmLayer *film_layers, const global SceneTexture *textures, const global float *texels,     \
         const global SceneLight *lights, const global float *light_cdf, const global float *pass_table,                \
         const global uint *sobol_table, global Ray *recorded_rays, global uint *recorded_count
 #define SCENE_FROM_PARAMETERS                                                                                          \
     RayCounts ray_counts = {0, 0};                                                                                     \
-    const Scene scene = {constants, nodes,      leaves,      triangles,     normals,        materials, lights,         \
-                         light_cdf, pass_table, sobol_table, recorded_rays, recorded_count, &ray_counts}
+    const Scene scene = {constants, nodes,     leaves,     triangles,   attributes,    materials,      film_layers,    \
+                         textures,  texels,    lights,     light_cdf,   pass_table,    sobol_table,    recorded_rays,  \
+                         recorded_count, &ray_counts}
 
 #define INFINITE_DISTANCE 1e30f
 
@@ -76,7 +82,18 @@ typedef struct Interaction {
     float extent;           // of its triangle
     int material;
     int light;
+#if HAS_UV
+    float2 uv;
+#endif
+#if HAS_ANISOTROPIC
+    float3 tangent;  // along ∂p/∂u, not normalised and not quite across the shading normal; 0 where u says nothing
+#endif
 } Interaction;
+
+// What a triangle has at its vertices: normals, then u and v.
+#define ATTRIBUTE_NORMALS 0
+#define ATTRIBUTE_UV (9 * HAS_SHADING_NORMALS)
+
 
 Interaction make_interaction(const Scene* scene, const Hit* hit) {
     const global Triangle* triangle = scene->triangles + hit->triangle;
@@ -91,12 +108,24 @@ Interaction make_interaction(const Scene* scene, const Hit* hit) {
     it.shading_normal = it.normal;
 #if HAS_SHADING_NORMALS
     if (triangle->attributes >= 0) {
-        const global float* n = scene->normals + triangle->attributes;
+        const global float* n = scene->attributes + triangle->attributes + ATTRIBUTE_NORMALS;
         const float3 blended = (1.0f - hit->u - hit->v) * vload3(0, n) + hit->u * vload3(1, n) + hit->v * vload3(2, n);
         const float squared = dot(blended, blended);
         if (squared > 0.0f)
             it.shading_normal = blended * rsqrt(squared);
     }
+#endif
+#if HAS_UV
+    const global float* uv = scene->attributes + triangle->attributes + ATTRIBUTE_UV;
+    const float2 uv0 = vload2(0, uv), uv1 = vload2(1, uv), uv2 = vload2(2, uv);
+    it.uv = (1.0f - hit->u - hit->v) * uv0 + hit->u * uv1 + hit->v * uv2;
+#endif
+#if HAS_ANISOTROPIC
+    // ∂p/∂u but for the determinant's size: edge = u' ∂p/∂u + v' ∂p/∂v for both edges.
+    const float2 along1 = uv1 - uv0, along2 = uv2 - uv0;
+    const float3 edge1 = (float3)(triangle->edge1_x, triangle->edge1_y, triangle->edge1_z);
+    const float3 edge2 = (float3)(triangle->edge2_x, triangle->edge2_y, triangle->edge2_z);
+    it.tangent = copysign(1.0f, along1.x * along2.y - along2.x * along1.y) * (along2.y * edge1 - along1.y * edge2);
 #endif
     return it;
 }

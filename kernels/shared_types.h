@@ -181,6 +181,23 @@ typedef struct Photon {
     int slot;
 } Photon;
 
+// What a rough surface does to a photon depends on directions, 20 bytes beside each visible point; material = -1 on a diffuse
+// surface.
+typedef struct VisibleSurface {
+    int material;
+    int outside;            // whether the camera path came from outside
+    tristim_uint outgoing;  // octahedral, towards the camera path
+    tristim_uint tangent;   // octahedral, of the frame in which the roughness is given
+    float thickness;        // nm, of the film's first layer
+} VisibleSurface;
+
+// Beside each photon, 8 bytes: the material, or -1 on a diffuse surface, and where it came from. On a rough surface its flux is
+// not multiplied by anything.
+typedef struct PhotonSurface {
+    int material;
+    tristim_uint incident;  // octahedral, back along the photon's path
+} PhotonSurface;
+
 // Running sums of one pixel, compensated (high and low part), 72 bytes: survive a million passes in float.
 typedef struct FilmPixel {
     float sum_high[3], sum_low[3];
@@ -198,7 +215,7 @@ static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
 static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 48);
 static_assert(sizeof(SceneFilmLayer) == 16 && sizeof(SceneTexture) == 96);
 static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
-static_assert(sizeof(FilmPixel) == 72);
+static_assert(sizeof(FilmPixel) == 72 && sizeof(VisibleSurface) == 20 && sizeof(PhotonSurface) == 8);
 } // namespace tristim
 #endif
 

@@ -31,7 +31,7 @@ float lanes_sum(floatv v) {
 #endif
 
 // The pass's wavelengths and every spectrum of the scene at them, filled by wavelengths.cl: rows of W_PADDED floats.
-//   row 0         λ in nm (0 for rgb bands, which have none)
+//   row 0         λ in nm
 //   rows 1 to 3   weights c_w of X, Y and Z: XYZ = Σ_w c_w L(λ_w); zero in the padding
 //   row 4 + s     spectrum s of the scene
 #define PASS_TABLE_SPECTRA 4

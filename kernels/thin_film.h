@@ -48,10 +48,10 @@ DoubleFloat sum_exactly(floatv a, floatv b, floatv low) {
 }
 
 // β² = n0² - (n0 cos θ)²
-DoubleFloat tangential_squared(floatv n0, float cosine) {
+DoubleFloat tangential_squared(floatv n0, floatv cosine) {
 #pragma OPENCL FP_CONTRACT OFF
     const floatv square = n0 * n0, normal = n0 * cosine;
-    const floatv normal_low = fma(n0, (floatv)(cosine), -normal);
+    const floatv normal_low = fma(n0, cosine, -normal);
     const floatv normal_square = normal * normal;
     const floatv low = fma(n0, n0, -square) - fma(normal, normal, -normal_square) - 2.0f * normal * normal_low;
     return sum_exactly(square, -normal_square, low);
@@ -209,15 +209,16 @@ void rescale(Fields* f, floatv* transmitted) {
 }
 
 // Light of block `block` of the pass's wavelengths that meets the film at an angle of cosine cos_i, from outside, where the index is
-// outside_eta, or from the base of index base_eta + i base_k (base_k must then be 0).
-FilmOptics film_optics(const global float* pass_table, int block, const ThinFilm* film, bool from_outside, float cos_i,
+// outside_eta, or from the base of index base_eta + i base_k (base_k must then be 0). cos_i may differ between the
+// wavelengths.
+FilmOptics film_optics(const global float* pass_table, int block, const ThinFilm* film, bool from_outside, floatv cos_i,
                        floatv outside_eta, floatv base_eta, floatv base_k) {
     Wavelength wave;
     wave.lambda = vloadv(block, pass_table);
     wave.inverse = 1.0f / wave.lambda;
     const floatv n0 = from_outside ? outside_eta : base_eta;
     const floatv n = from_outside ? base_eta : outside_eta;
-    const float cosine = max(cos_i, SMALLEST_Q);
+    const floatv cosine = max(cos_i, SMALLEST_Q);
     const floatv q0 = n0 * cosine, epsilon0 = n0 * n0;
     const DoubleFloat beta2 = tangential_squared(n0, cosine);
 

@@ -5,8 +5,8 @@
 //                  pdf f_ξ/∫f_ξ estimates ∫L f_ξ/∫f_ξ, so with the 1/k of equations 2 to 4 the weight in channel ξ is
 //                  ∫f_ξ / (k N), and nothing in the other channels (equations 9 to 11).
 //   spectral:400   one wavelength in each bin of 1 nm, at the same place in all; weights f_ξ(bin)·1 nm / k.
-//   rgb            three bands; the host has integrated the spectra over them (host/render/wavelength_sampler.h), the weights
-//                  are the columns of the matrix from RGB to XYZ.
+//   rgb            three bands; the host has integrated the spectra over them (host/render/spectrum_table.h), the weights
+//                  are the columns of the matrix from RGB to XYZ. Interference sees each band as one wavelength.
 //
 // u: the paper draws it afresh for each set; by default set ν of N takes (ν + v)/N with v from the golden-ratio sequence
 // over the passes, so that both the sets and the passes are stratified.
@@ -53,41 +53,40 @@ float bins_at(const global float* bins, int smooth, float lambda) {
 }
 
 // One work-item per wavelength, W_PADDED of them. sampler_table is, for tristimulus, three CDFs of LAMBDA_BINS + 1 values and
-// then their three values of ∫f_ξ/k; for spectral, three rows of f_ξ/k; for rgb, the matrix's three rows. spectra holds a row
-// for each spectrum: LAMBDA_BINS means or three band values.
+// then their three values of ∫f_ξ/k; for spectral, three rows of f_ξ/k; for rgb, the matrix's three rows and the bands' wavelengths.
+// spectra holds a row for each spectrum: LAMBDA_BINS means or three band values. The padding repeats the last wavelength, so that
+// nothing in it divides by zero, with weights and emission of zero.
 kernel void wavelengths(uint seed, uint pass, const global float* sampler_table, const global float* spectra,
                         const global int* spectrum_is_smooth, int spectrum_count, global float* pass_table) {
-    const int w = (int)get_global_id(0);
-    const bool used = w < W;
-    float lambda = 0.0f;
-    float3 weight = 0.0f;
-    if (used) {
+    const int item = (int)get_global_id(0);
+    const int w = min(item, W - 1);
+    const bool used = item < W;
+    float lambda;
+    float3 weight;
 #if SAMPLER == SAMPLER_TRISTIMULUS
-        const int channel = w % 3;
-        const float u = sample_position(seed, pass, (uint)(w / 3), W / 3);
-        lambda = invert_cdf(sampler_table + channel * (LAMBDA_BINS + 1), u);
-        const float share = sampler_table[3 * (LAMBDA_BINS + 1) + channel] / (float)(W / 3);
-        weight = (float3)(channel == 0 ? share : 0.0f, channel == 1 ? share : 0.0f, channel == 2 ? share : 0.0f);
+    const int channel = w % 3;
+    const float u = sample_position(seed, pass, (uint)(w / 3), W / 3);
+    lambda = invert_cdf(sampler_table + channel * (LAMBDA_BINS + 1), u);
+    const float share = sampler_table[3 * (LAMBDA_BINS + 1) + channel] / (float)(W / 3);
+    weight = (float3)(channel == 0 ? share : 0.0f, channel == 1 ? share : 0.0f, channel == 2 ? share : 0.0f);
 #elif SAMPLER == SAMPLER_SPECTRAL
-        lambda = LAMBDA_MIN + (float)w + sample_position(seed, pass, 0u, 1u);
-        weight = (float3)(sampler_table[w], sampler_table[W + w], sampler_table[2 * W + w]);
+    lambda = LAMBDA_MIN + (float)w + sample_position(seed, pass, 0u, 1u);
+    weight = (float3)(sampler_table[w], sampler_table[W + w], sampler_table[2 * W + w]);
 #else
-        weight = (float3)(sampler_table[w], sampler_table[3 + w], sampler_table[6 + w]);
+    lambda = sampler_table[9 + w];
+    weight = (float3)(sampler_table[w], sampler_table[3 + w], sampler_table[6 + w]);
 #endif
-    }
-    pass_table[w] = lambda;
-    pass_table[W_PADDED + w] = weight.x;
-    pass_table[2 * W_PADDED + w] = weight.y;
-    pass_table[3 * W_PADDED + w] = weight.z;
+    pass_table[item] = lambda;
+    pass_table[W_PADDED + item] = used ? weight.x : 0.0f;
+    pass_table[2 * W_PADDED + item] = used ? weight.y : 0.0f;
+    pass_table[3 * W_PADDED + item] = used ? weight.z : 0.0f;
     for (int s = 0; s < spectrum_count; ++s) {
-        float value = 0.0f;
-        if (used) {
+        const bool smooth = spectrum_is_smooth[s];
 #if SAMPLER == SAMPLER_RGB
-            value = spectra[3 * s + w];
+        const float value = spectra[3 * s + w];
 #else
-            value = bins_at(spectra + s * LAMBDA_BINS, spectrum_is_smooth[s], lambda);
+        const float value = bins_at(spectra + s * LAMBDA_BINS, smooth, lambda);
 #endif
-        }
-        pass_table[(PASS_TABLE_SPECTRA + s) * W_PADDED + w] = value;
+        pass_table[(PASS_TABLE_SPECTRA + s) * W_PADDED + item] = used || smooth ? value : 0.0f;
     }
 }

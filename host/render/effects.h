@@ -10,6 +10,15 @@ struct Effects {
     bool dielectric = false;
     bool dispersion = false; ///< a dielectric whose index depends on the wavelength
     bool conductor = false;
+    bool film = false;
+    bool absorbing_film = false; ///< a film with a layer that absorbs
+    bool coated_diffuse = false; ///< a film on a diffuse surface
+    bool rough = false;
+    bool rough_photons = false;   ///< a surface that is rough enough to take photons
+    bool nearly_specular = false; ///< a rough surface that is not
+    bool anisotropic = false;
+    bool texture = false;
+    bool uv = false; ///< textures or roughness that need the surface's u and v
     bool shading_normals = false;
     bool thin_lens = false;
     bool point_light = false;
@@ -18,6 +27,18 @@ struct Effects {
     bool infinite_light = false;
     bool area_light = false;
 };
+
+/// The GGX roughness α (the larger of the two) from which on a surface takes photons and ends camera paths, as a
+/// diffuse one does; smoother surfaces pass camera paths on.
+constexpr double photon_roughness = 0.1;
+
+bool takes_photons(const Material& material);
+
+/// Whether camera paths may carry a throughput of its own for every wavelength: COLOURED_EYE of kernels/config.h.
+bool has_coloured_eye(const Effects& effects);
+
+/// Whether photons keep the flux of every wavelength: STORE_SPECTRAL_FLUX.
+bool stores_spectral_flux(const Effects& effects);
 
 /// Only materials and lights in use count.
 Effects derive_effects(const Scene& scene);

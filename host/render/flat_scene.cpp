@@ -1,6 +1,7 @@
 #include "render/flat_scene.h"
 
 #include "base/error.h"
+#include "render/flat_texture.h"
 #include "spectra/colour.h"
 
 #include <algorithm>
@@ -49,6 +50,19 @@ void place_camera(const Camera& camera, int width, int height, SceneConstants& c
     c.image_height = height;
 }
 
+void add_film(const Film& film, FlatScene& flat, SurfaceMaterial& m) {
+    m.film = static_cast<int>(flat.film_layers.size());
+    m.film_layers = static_cast<int>(film.layers.size());
+    m.film_texture = film.thickness_texture;
+    for (const FilmLayer& layer : film.layers) {
+        SceneFilmLayer l{};
+        l.thickness = static_cast<float>(layer.thickness);
+        l.eta = flat.spectra.add(layer.eta, SpectrumTable::Use::Index);
+        l.k = flat.spectra.add(layer.k, SpectrumTable::Use::Index);
+        flat.film_layers.push_back(l);
+    }
+}
+
 void add_materials(const Scene& scene, FlatScene& flat) {
     using Use = SpectrumTable::Use;
     for (const Material& material : scene.materials) {
@@ -57,6 +71,10 @@ void add_materials(const Scene& scene, FlatScene& flat) {
         case Material::Kind::Diffuse:
             m.kind = MATERIAL_DIFFUSE;
             m.reflectance = flat.spectra.add(material.reflectance, Use::Reflectance);
+            if (!material.film.layers.empty()) {
+                m.eta = flat.spectra.add(material.eta, Use::Index);
+                m.internal_reflectance = flat.spectra.add(Spectrum(), Use::Reflectance); // film_tables.cl fills it
+            }
             break;
         case Material::Kind::Dielectric:
             m.kind = MATERIAL_DIELECTRIC;
@@ -69,8 +87,39 @@ void add_materials(const Scene& scene, FlatScene& flat) {
             m.k = flat.spectra.add(material.k, Use::Index);
             break;
         }
+        m.alpha_u = static_cast<float>(material.alpha_u);
+        m.alpha_v = static_cast<float>(material.alpha_v);
+        m.takes_photons = takes_photons(material) ? 1 : 0;
+        add_film(material.film, flat, m);
         flat.materials.push_back(m);
     }
+    for (const Texture& texture : scene.textures)
+        flat.textures.push_back(flatten_texture(texture, flat.texels));
+}
+
+/// Where a mesh has no u and v, pbrt's.
+constexpr std::array<std::array<float, 2>, 3> default_uv{{{0.0F, 0.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}}};
+
+/// Returns the index of the triangle's attributes, or -1 if it needs none.
+int add_attributes(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners, const V3d& normal,
+                   const Effects& effects, std::vector<float>& attributes) {
+    if (mesh.normals.empty() && !effects.uv)
+        return -1;
+    const auto index = static_cast<int>(attributes.size());
+    if (effects.shading_normals) {
+        for (const std::uint32_t corner : corners) {
+            const V3f n = mesh.normals.empty() ? V3f(normal) : mesh.normals[corner];
+            attributes.insert(attributes.end(), {n.x, n.y, n.z});
+        }
+    }
+    if (effects.uv) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::array<float, 2> uv =
+                mesh.uv.empty() ? default_uv[i] : std::array{mesh.uv[corners[i]].x, mesh.uv[corners[i]].y};
+            attributes.insert(attributes.end(), uv.begin(), uv.end());
+        }
+    }
+    return index;
 }
 
 float largest_coordinate(const std::array<V3f, 3>& vertices) {
@@ -81,7 +130,7 @@ float largest_coordinate(const std::array<V3f, 3>& vertices) {
 }
 
 /// Adds a shape's triangles; `area_light` and its spectrum's row apply if the shape emits.
-void add_triangles(const Shape& shape, const Light* area_light, int spectrum, FlatScene& flat) {
+void add_triangles(const Shape& shape, const Effects& effects, const Light* area_light, int spectrum, FlatScene& flat) {
     for (const auto& corners : shape.mesh.triangles) {
         const V3f v0 = shape.mesh.positions[corners[0]];
         const V3f v1 = shape.mesh.positions[corners[1]];
@@ -99,14 +148,7 @@ void add_triangles(const Shape& shape, const Light* area_light, int spectrum, Fl
         t.extent = largest_coordinate({v0, v1, v2});
         t.material = shape.material;
         t.light = -1;
-        t.attributes = -1;
-        if (!shape.mesh.normals.empty()) {
-            t.attributes = static_cast<int>(flat.attributes.size());
-            for (const std::uint32_t corner : corners) {
-                const V3f n = shape.mesh.normals[corner];
-                flat.attributes.insert(flat.attributes.end(), {n.x, n.y, n.z});
-            }
-        }
+        t.attributes = add_attributes(shape.mesh, corners, normal, effects, flat.attributes);
         if (area_light != nullptr) {
             SceneLight light{};
             light.kind = LIGHT_AREA;
@@ -218,7 +260,7 @@ void weigh_lights(const Scene& scene, const std::vector<double>& luminances, Fla
 
 } // namespace
 
-FlatScene flatten_scene(const Scene& scene, int width, int height, const Region& region) {
+FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, int height, const Region& region) {
     FlatScene flat;
     add_materials(scene, flat);
 
@@ -244,7 +286,7 @@ FlatScene flatten_scene(const Scene& scene, int width, int height, const Region&
     for (const Shape& shape : scene.shapes) {
         const bool emits = shape.area_light >= 0;
         const auto light = static_cast<std::size_t>(std::max(shape.area_light, 0));
-        add_triangles(shape, emits ? &scene.lights[light] : nullptr, emits ? rows[light] : -1, flat);
+        add_triangles(shape, effects, emits ? &scene.lights[light] : nullptr, emits ? rows[light] : -1, flat);
     }
     bound(flat);
     weigh_lights(scene, luminances, flat);

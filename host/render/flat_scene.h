@@ -2,6 +2,7 @@
 
 #include "base/region.h"
 #include "bvh/bvh.h"
+#include "render/effects.h"
 #include "render/spectrum_table.h"
 #include "scene/scene.h"
 #include "shared_types.h"
@@ -15,8 +16,11 @@ struct FlatScene {
     SceneConstants constants{};
     TriangleSoup soup;               ///< for build_bvh
     std::vector<Triangle> triangles; ///< same order
-    std::vector<float> normals;      ///< nine floats for each triangle that has vertex normals
+    std::vector<float> attributes;   ///< of the triangles' vertices, see Triangle::attributes
     std::vector<SurfaceMaterial> materials;
+    std::vector<SceneFilmLayer> film_layers;
+    std::vector<SceneTexture> textures;
+    std::vector<float> texels;
     std::vector<SceneLight> lights; ///< an area light becomes one for each of its triangles
     std::vector<float> light_cdf;   ///< lights.size() + 1 values, by power
     SpectrumTable spectra;
@@ -24,6 +28,6 @@ struct FlatScene {
 
 /// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no
 /// light within the visible range.
-FlatScene flatten_scene(const Scene& scene, int width, int height, const Region& region);
+FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, int height, const Region& region);
 
 } // namespace tristim

@@ -53,7 +53,7 @@ std::size_t rays_to_record(const RenderOptions& options) {
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Device& device)
     : device_(device), options_(options), effects_(derive_effects(scene)), layout_(wavelength_layout(options.method)) {
     check_options(options);
-    const FlatScene flat = flatten_scene(scene, options.width, options.height, options.region);
+    const FlatScene flat = flatten_scene(scene, effects_, options.width, options.height, options.region);
     scene_buffers_ = SceneBuffers(device, flat, rays_to_record(options));
     statistics_.bvh_seconds = scene_buffers_.bvh_seconds();
 
@@ -69,7 +69,8 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     const auto pixels = static_cast<std::size_t>(options.region.pixels());
     radius0_ = Buffer<float>(device, "initial radii", pixels);
     visible_points_ = Buffer<VisiblePoint>(device, "visible points", pixels);
-    eye_spectra_ = Buffer<float>(device, "throughput spectra", effects_.conductor ? pixels * padded : 0);
+    visible_surfaces_ = Buffer<VisibleSurface>(device, "visible surfaces", effects_.rough_photons ? pixels : 0);
+    eye_spectra_ = Buffer<float>(device, "throughput spectra", has_coloured_eye(effects_) ? pixels * padded : 0);
     largest_radius_ = Buffer<std::uint32_t>(device, "largest radius", 1);
     gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
     film_ = Buffer<FilmPixel>(device, "film", pixels);
@@ -93,6 +94,8 @@ void Renderer::build_kernels() {
         return ::cl::Kernel(build_program(device_, file, macros, build), name);
     };
     wavelengths_ = kernel("wavelengths.cl", "wavelengths");
+    if (effects_.coated_diffuse)
+        film_tables_ = kernel("film_tables.cl", "film_tables");
     eye_pass_ = kernel("eye_pass.cl", "eye_pass");
     photon_pass_ = kernel("photon_pass.cl", "photon_pass");
     sorter_ = PhotonSorter(device_, macros, build, radix_bits(options_.photons_per_pass));
@@ -107,9 +110,10 @@ void Renderer::build_kernels() {
 void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     capacity_per_item_ = std::max(capacity_per_item, 1U);
     const std::size_t photons = std::size_t{photon_items_} * capacity_per_item_;
-    const bool store_spectra = effects_.dispersion || effects_.conductor;
+    const bool store_spectra = stores_spectral_flux(effects_);
     const std::size_t floats = store_spectra ? photons * static_cast<std::size_t>(layout_.padded()) : 0;
     photons_ = Buffer<Photon>(device_, "photons", photons);
+    photon_surfaces_ = Buffer<PhotonSurface>(device_, "photon surfaces", effects_.rough_photons ? photons : 0);
     photon_spectra_ = Buffer<float>(device_, "photon spectra", floats);
     sorter_.allocate(device_, photon_items_, capacity_per_item_);
 
@@ -122,13 +126,15 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     add(spectra_);
     add(pass_table_);
     const double pixel_bytes =
-        add(radius0_) + add(visible_points_) + add(eye_spectra_) + add(gathered_flux_) + add(film_);
+        add(radius0_) + add(visible_points_) + add(visible_surfaces_) + add(eye_spectra_) + add(gathered_flux_) + add(film_);
     statistics_.bytes_per_pixel = pixel_bytes / options_.region.pixels();
     add(photons_);
+    add(photon_surfaces_);
     add(photon_spectra_);
     for (const auto& size : sorter_.sizes())
         statistics_.buffer_bytes.push_back(size);
     statistics_.bytes_per_photon = static_cast<double>(sizeof(Photon) + 2 * sizeof(cl_uint2)) +
+                                   (effects_.rough_photons ? static_cast<double>(sizeof(PhotonSurface)) : 0.0) +
                                    (store_spectra ? static_cast<double>(sizeof(float)) * layout_.padded() : 0.0);
 }
 
@@ -188,6 +194,13 @@ void Renderer::fill_wavelengths(std::uint32_t pass) {
     wavelengths_.setArg(argument++, pass_table_.cl());
     const auto wavelengths = static_cast<std::size_t>(layout_.padded());
     enqueue(Step::Wavelengths, wavelengths_, wavelengths, std::min(wavelengths, pixel_group));
+    if (!effects_.coated_diffuse)
+        return;
+    film_tables_.setArg(0, scene_buffers_.materials().cl());
+    film_tables_.setArg(1, scene_buffers_.film_layers().cl());
+    film_tables_.setArg(2, pass_table_.cl());
+    const std::size_t rows = static_cast<std::size_t>(layout_.blocks) * scene_buffers_.materials().size();
+    enqueue(Step::Wavelengths, film_tables_, rows, 1);
 }
 
 void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
@@ -198,6 +211,7 @@ void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
     eye_pass_.setArg(argument++, scale);
     eye_pass_.setArg(argument++, film_.cl());
     eye_pass_.setArg(argument++, visible_points_.cl());
+    eye_pass_.setArg(argument++, visible_surfaces_.cl());
     eye_pass_.setArg(argument++, eye_spectra_.cl());
     enqueue(Step::EyePass, eye_pass_, visible_points_.size(), pixel_group);
 
@@ -219,6 +233,7 @@ void Renderer::trace_photons(std::uint32_t pass) {
         photon_pass_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
         photon_pass_.setArg(argument++, capacity_per_item_);
         photon_pass_.setArg(argument++, photons_.cl());
+        photon_pass_.setArg(argument++, photon_surfaces_.cl());
         photon_pass_.setArg(argument++, photon_spectra_.cl());
         photon_pass_.setArg(argument++, item_counts_.cl());
         photon_pass_.setArg(argument++, item_rays_.cl());
@@ -244,7 +259,10 @@ void Renderer::gather_photons() {
                                        &sorter_.bucket_begin().cl(), &largest_radius_.cl()})
         gather_.setArg(argument++, *buffer);
     gather_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
-    gather_.setArg(argument++, gathered_flux_.cl());
+    for (const ::cl::Buffer* buffer :
+         {&visible_surfaces_.cl(), &photon_surfaces_.cl(), &scene_buffers_.materials().cl(),
+          &scene_buffers_.film_layers().cl(), &gathered_flux_.cl()})
+        gather_.setArg(argument++, *buffer);
     enqueue(Step::Gather, gather_, visible_points_.size(), pixel_group);
 }
 

@@ -80,6 +80,7 @@ class Renderer {
     Buffer<float> radius0_;
     float largest_radius0_ = 0.0F;
     Buffer<VisiblePoint> visible_points_;
+    Buffer<VisibleSurface> visible_surfaces_;
     Buffer<float> eye_spectra_;
     Buffer<std::uint32_t> largest_radius_;
     Buffer<cl_float4> gathered_flux_;
@@ -89,12 +90,14 @@ class Renderer {
     std::uint32_t capacity_per_item_ = 0;
     std::uint32_t photon_count_ = 0; ///< stored in the last pass
     Buffer<Photon> photons_;
+    Buffer<PhotonSurface> photon_surfaces_;
     Buffer<float> photon_spectra_;
     Buffer<std::uint32_t> item_counts_;
     Buffer<std::uint32_t> item_rays_;
     PhotonSorter sorter_;
 
     ::cl::Kernel wavelengths_;
+    ::cl::Kernel film_tables_;
     ::cl::Kernel eye_pass_;
     ::cl::Kernel photon_pass_;
     ::cl::Kernel gather_;

@@ -15,8 +15,11 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::si
     nodes_ = Buffer<BvhNode>(device, "BVH nodes", bvh_.nodes);
     leaves_ = Buffer<BvhLeaf>(device, "BVH leaves", bvh_.leaves);
     triangles_ = Buffer<Triangle>(device, "triangles", scene.triangles);
-    normals_ = Buffer<float>(device, "vertex normals", scene.normals);
+    attributes_ = Buffer<float>(device, "vertex attributes", scene.attributes);
     materials_ = Buffer<SurfaceMaterial>(device, "materials", scene.materials);
+    film_layers_ = Buffer<SceneFilmLayer>(device, "film layers", scene.film_layers);
+    textures_ = Buffer<SceneTexture>(device, "textures", scene.textures);
+    texels_ = Buffer<float>(device, "texels", scene.texels);
     lights_ = Buffer<SceneLight>(device, "lights", scene.lights);
     light_cdf_ = Buffer<float>(device, "light CDF", scene.light_cdf);
     sobol_table_ = Buffer<std::uint32_t>(device, "Sobol' table", sobol_table());
@@ -27,8 +30,8 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::si
 
 cl_uint SceneBuffers::bind(::cl::Kernel& kernel, const Buffer<float>& pass_table) const {
     cl_uint index = 0;
-    for (const ::cl::Buffer* buffer : {&constants_.cl(), &nodes_.cl(), &leaves_.cl(), &triangles_.cl(), &normals_.cl(),
-                                       &materials_.cl(), &lights_.cl(), &light_cdf_.cl(), &pass_table.cl(),
+    for (const ::cl::Buffer* buffer : {&constants_.cl(), &nodes_.cl(), &leaves_.cl(), &triangles_.cl(), &attributes_.cl(),
+                                       &materials_.cl(), &film_layers_.cl(), &textures_.cl(), &texels_.cl(), &lights_.cl(), &light_cdf_.cl(), &pass_table.cl(),
                                        &sobol_table_.cl(), &recorded_rays_.cl(), &recorded_count_.cl()})
         kernel.setArg(index++, *buffer);
     return index;
@@ -50,8 +53,11 @@ std::vector<std::pair<std::string, std::uint64_t>> SceneBuffers::sizes() const {
     add(nodes_);
     add(leaves_);
     add(triangles_);
-    add(normals_);
+    add(attributes_);
     add(materials_);
+    add(film_layers_);
+    add(textures_);
+    add(texels_);
     add(lights_);
     add(light_cdf_);
     add(sobol_table_);

@@ -24,6 +24,8 @@ class SceneBuffers {
     const Bvh& bvh() const { return bvh_; }
     double bvh_seconds() const { return bvh_seconds_; }
     const Buffer<SceneConstants>& constants() const { return constants_; }
+    const Buffer<SurfaceMaterial>& materials() const { return materials_; }
+    const Buffer<SceneFilmLayer>& film_layers() const { return film_layers_; }
 
     /// Forgets recorded rays; the rays recorded since.
     void clear_recorded_rays(const Device& device) const;
@@ -38,8 +40,11 @@ class SceneBuffers {
     Buffer<BvhNode> nodes_;
     Buffer<BvhLeaf> leaves_;
     Buffer<Triangle> triangles_;
-    Buffer<float> normals_;
+    Buffer<float> attributes_;
     Buffer<SurfaceMaterial> materials_;
+    Buffer<SceneFilmLayer> film_layers_;
+    Buffer<SceneTexture> textures_;
+    Buffer<float> texels_;
     Buffer<SceneLight> lights_;
     Buffer<float> light_cdf_;
     Buffer<std::uint32_t> sobol_table_;

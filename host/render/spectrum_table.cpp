@@ -18,6 +18,19 @@ Rgb rgb_of(const Bins& bins) {
     return xyz_to_rgb(xyz);
 }
 
+/// The wavelength that stands for each band: the centroid, in nm, of the positive part of its colour matching function.
+std::array<double, 3> band_wavelengths() {
+    std::array<double, 3> weighted{}, sum{};
+    for (std::size_t i = 0; i < lambda_bins; ++i) {
+        const Rgb rgb = xyz_to_rgb({cie_bins()[0][i], cie_bins()[1][i], cie_bins()[2][i]});
+        for (std::size_t c = 0; c < 3; ++c) {
+            sum[c] += std::max(rgb[c], 0.0);
+            weighted[c] += std::max(rgb[c], 0.0) * (lambda_min_nm + static_cast<double>(i) + 0.5);
+        }
+    }
+    return {weighted[0] / sum[0], weighted[1] / sum[1], weighted[2] / sum[2]};
+}
+
 Rgb band_values(const Spectrum& spectrum, SpectrumTable::Use use) {
     Bins bins = spectrum.bins();
     if (use == SpectrumTable::Use::Emission) {
@@ -99,6 +112,8 @@ std::vector<float> sampler_table(const Method& method) {
             for (const double value : row)
                 append(value);
         }
+        for (const double wavelength : band_wavelengths())
+            append(wavelength);
         break;
     }
     return table;

@@ -1,0 +1,68 @@
+// Smooth dielectrics and conductors without a film.
+#ifndef TRISTIM_SPECULAR_H
+#define TRISTIM_SPECULAR_H
+
+#include "optics.h"
+#include "path_weight.h"
+#include "scene.h"
+
+#if HAS_DIELECTRIC
+// Reflects or refracts about a normal on the incident side; u in [0, 1) decides.
+float3 reflect_or_refract(float3 direction, float3 n, float cos_i, float inverse_eta, float u, bool* refracted) {
+    float cos_t;
+    *refracted = u >= fresnel_dielectric(cos_i, inverse_eta, &cos_t);
+    // Both are cheaper than a branch that no processor can foresee.
+    const float3 reflection = reflect(direction, n, cos_i);
+    const float3 refraction = refract(direction, n, inverse_eta, cos_i, cos_t);
+    return *refracted ? refraction : reflection;
+}
+
+// Reflects or refracts at a smooth dielectric, by chance in proportion to the Fresnel reflectance, so that neither changes
+// the weight. `radiance` says that the path runs from the camera: radiance scales by (η_i/η_t)² at refraction, flux does not
+// (Veach 1997, section 5.2). Returns the new direction.
+float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
+                          float3 direction, float u, bool radiance, PathWeight* weight) {
+    const float inside_over_outside = spectrum_row(scene->pass_table, material->eta)[max(weight->slot, 0)];
+    float cos_i;
+    const Facing facing = facing_normal(it, -direction, &cos_i);
+    const float inverse_eta = facing.outside ? 1.0f / inside_over_outside : inside_over_outside;
+    bool refracted;
+    float3 scattered = reflect_or_refract(direction, facing.normal, cos_i, inverse_eta, u, &refracted);
+#if HAS_SHADING_NORMALS
+    // At grazing angles a shading normal may send the ray to the wrong side, where it would count as inside what it never
+    // entered: then the geometric normal takes its place.
+    if ((dot(scattered, it->normal) >= 0.0f) != (facing.outside != refracted)) {
+        const float3 n = facing.outside ? it->normal : -it->normal;
+        scattered = reflect_or_refract(direction, n, min(-dot(direction, n), 1.0f), inverse_eta, u, &refracted);
+    }
+#endif
+    if (radiance)
+        weight->scale *= refracted ? inverse_eta * inverse_eta : 1.0f;
+    return scattered;
+}
+#endif
+
+#if HAS_CONDUCTOR
+// Reflects at a smooth conductor; the Fresnel reflectance multiplies the weight. Returns the new direction.
+float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
+                         float3 direction, PathWeight* weight) {
+    float cos_i;
+    const Facing facing = facing_normal(it, -direction, &cos_i);
+    const global float* eta = spectrum_row(scene->pass_table, material->eta);
+    const global float* k = spectrum_row(scene->pass_table, material->k);
+    if (weight->slot >= 0) {
+        weight->scale *= fresnel_conductor(cos_i, eta[weight->slot], k[weight->slot]);
+    } else {
+        for (int b = 0; b < BLOCKS; ++b)
+            weight->spectrum.block[b] *= fresnel_conductor_lanes(cos_i, vloadv(b, eta), vloadv(b, k));
+    }
+    const float3 scattered = reflect(direction, facing.normal, cos_i);
+#if HAS_SHADING_NORMALS
+    if ((dot(scattered, it->normal) >= 0.0f) != facing.outside)
+        return reflect(direction, it->normal, -dot(direction, it->normal));
+#endif
+    return scattered;
+}
+#endif
+
+#endif
