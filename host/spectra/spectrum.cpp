@@ -100,6 +100,18 @@ std::array<double, lambda_bins> Spectrum::bins() const {
     return result;
 }
 
+double Spectrum::minimum(double from_nm, double to_nm) const {
+    double least = std::min((*this)(from_nm), (*this)(to_nm));
+    if (!samples_)
+        return least;
+    const std::vector<double>& lambda = samples_->lambda_nm;
+    for (std::size_t i = 0; i < lambda.size(); ++i) {
+        if (lambda[i] >= from_nm && lambda[i] <= to_nm)
+            least = std::min(least, scale_ * samples_->values[i]);
+    }
+    return least;
+}
+
 bool Spectrum::is_constant() const {
     if (!samples_ || scale_ == 0.0)
         return true;

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tristim {
@@ -56,6 +57,9 @@ class Spectrum {
     /// Means over the 400 bins [380+i, 381+i) nm.
     std::array<double, lambda_bins> bins() const;
 
+    /// The smallest value over [from_nm, to_nm].
+    double minimum(double from_nm, double to_nm) const;
+
     /// True if the value is the same at every visible wavelength.
     bool is_constant() const;
 
@@ -78,5 +82,12 @@ class Spectrum {
 
 /// Names that Spectrum::named() knows, sorted.
 std::vector<std::string> named_spectra();
+
+/// The .spd text of a named spectrum; its head says what it is, where it was published and its range, and its values
+/// are those of the source. Throws Error as Spectrum::named().
+std::string_view named_spectrum_text(const std::string& name);
+
+/// True for the names of emission spectra, "stdillum-…" (of the CIE) and "illum-…".
+bool is_illuminant(const std::string& name);
 
 } // namespace tristim
