@@ -18,7 +18,7 @@ float film_thickness(const Scene* scene, const global SurfaceMaterial* material,
 #else
         const float2 uv = 0.0f;
 #endif
-        return evaluate_texture(scene->textures + material->film_texture, scene->texels, it->point, uv);
+        return fmax(evaluate_texture(scene->textures + material->film_texture, scene->texels, it->point, uv), 0.0f);
     }
 #endif
     return material->film_layers > 0 ? scene->film_layers[material->film].thickness : 0.0f;

@@ -197,6 +197,117 @@ TEST(MeshIo, ObjVerticesSplitWhereNormalsDiffer) {
     }
 }
 
+TEST(MeshIo, ObjVerticesSplitWhereTextureCoordinatesDiffer) {
+    const SceneFolder folder;
+    // Two triangles of a square: the vertex 1 has different coordinates in them, the vertex 3 the same, with a w or
+    // without.
+    const MeshFile mesh = read_mesh(folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0 9\n"
+                                                          "vt 1 1\nvt -2 3\nvn 0 0 1\n"
+                                                          "f 1/1/1 2/2/1 3/3/1\nf 1/4/1 3/3/1 4/2/1\n"),
+                                    MeshFormat::Obj);
+    ASSERT_EQ(mesh.positions.size(), 5u);
+    ASSERT_EQ(mesh.uv.size(), 5u);
+    ASSERT_EQ(mesh.normals.size(), 5u);
+    const std::array<std::array<V2f, 3>, 2> expected{
+        {{V2f(0.25F, 0.5F), V2f(1, 0), V2f(1, 1)}, {V2f(-2, 3), V2f(1, 1), V2f(1, 0)}}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            EXPECT_EQ(mesh.uv[mesh.triangles[i][corner]], expected[i][corner]);
+    }
+}
+
+TEST(MeshIo, ObjTextureCoordinatesMayStandAnywhereAndBeCountedBackwards) {
+    const SceneFolder folder;
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n", uv = "vt 1 2\nvt 3 4\nvt 5 6\n";
+    for (const std::string& text :
+         {vertices + uv + "f 1/-3 2/-2 3/-1\n", uv + "f 1/1 2/2 3/3\n" + vertices, vertices + "f 1/1 2/2 3/3\n" + uv}) {
+        const MeshFile mesh = read_mesh(folder.write("m.obj", text), MeshFormat::Obj);
+        ASSERT_EQ(mesh.uv.size(), 3u) << text;
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_EQ(mesh.uv[mesh.triangles[0][i]],
+                      V2f(1.0F + 2.0F * static_cast<float>(i), 2.0F + 2.0F * static_cast<float>(i)))
+                << text;
+    }
+}
+
+TEST(MeshIo, ObjCornersWithoutTextureCoordinatesGetZeros) {
+    const SceneFolder folder;
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 5 6\n";
+    const MeshFile mesh = read_mesh(folder.write("m.obj", vertices + "f 1/1 2/1 3/1\nf 1 3 4\n"), MeshFormat::Obj);
+    ASSERT_EQ(mesh.uv.size(), 6u);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        EXPECT_EQ(mesh.uv[mesh.triangles[0][corner]], V2f(5, 6));
+        EXPECT_EQ(mesh.uv[mesh.triangles[1][corner]], V2f(0, 0));
+    }
+    EXPECT_TRUE(read_mesh(folder.write("m.obj", vertices + "f 1 2 3\n"), MeshFormat::Obj).uv.empty());
+}
+
+TEST(MeshIo, PlyTextureCoordinatesUnderAllTheirNames) {
+    const SceneFolder folder;
+    const std::vector<std::array<const char*, 2>> names{
+        {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+    for (const auto& [u, v] : names) {
+        for (const char* type : {"float", "double"}) {
+            const std::string text = fmt::format(
+                "ply\nformat ascii 1.0\nelement vertex 3\nproperty {2} {0}\nproperty float x\nproperty float y\n"
+                "property {2} {1}\nproperty float z\nelement face 1\nproperty list uchar int "
+                "vertex_indices\nend_header\n"
+                "0.25 0 0 0.5 1\n-2 1 0 3 1\n7 0 1 8 1\n3 0 1 2\n",
+                u, v, type);
+            const MeshFile mesh = read_mesh(folder.write("m.ply", text), MeshFormat::Ply);
+            ASSERT_EQ(mesh.uv.size(), 3u) << u << " " << type;
+            EXPECT_EQ(mesh.uv[mesh.triangles[0][0]], V2f(0.25F, 0.5F)) << u << " " << type;
+            EXPECT_EQ(mesh.uv[mesh.triangles[0][1]], V2f(-2, 3)) << u << " " << type;
+            EXPECT_EQ(mesh.uv[mesh.triangles[0][2]], V2f(7, 8)) << u << " " << type;
+            EXPECT_EQ(mesh.positions[mesh.triangles[0][1]], V3f(1, 0, 1)) << u << " " << type;
+        }
+    }
+}
+
+template <typename Uv>
+std::string binary_ply_with_uv(const char* type, bool big_endian) {
+    std::string bytes =
+        fmt::format("ply\nformat binary_{0}_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nproperty {1} u\nproperty {1} v\nelement face 1\n"
+                    "property list uchar int vertex_indices\nend_header\n",
+                    big_endian ? "big" : "little", type);
+    for (int i = 0; i < 3; ++i) {
+        for (const float x : {i == 1 ? 1.0F : 0.0F, i == 2 ? 1.0F : 0.0F, 2.0F})
+            append(bytes, x, big_endian);
+        append(bytes, static_cast<Uv>(0.5 * i), big_endian);
+        append(bytes, static_cast<Uv>(3 - i), big_endian);
+    }
+    append(bytes, static_cast<unsigned char>(3), big_endian);
+    for (const int vertex : {0, 1, 2})
+        append(bytes, vertex, big_endian);
+    return bytes;
+}
+
+TEST(MeshIo, BinaryPlyTextureCoordinates) {
+    const SceneFolder folder;
+    for (const bool big_endian : {false, true}) {
+        for (const std::string& bytes :
+             {binary_ply_with_uv<float>("float", big_endian), binary_ply_with_uv<double>("float64", big_endian)}) {
+            const MeshFile mesh = read_mesh(folder.write("m.ply", bytes), MeshFormat::Ply);
+            ASSERT_EQ(mesh.uv.size(), 3u);
+            for (std::size_t i = 0; i < 3; ++i)
+                EXPECT_EQ(mesh.uv[mesh.triangles[0][i]],
+                          V2f(0.5F * static_cast<float>(i), 3.0F - static_cast<float>(i)));
+        }
+    }
+}
+
+TEST(MeshIo, OneTextureCoordinateAloneIsNone) {
+    const SceneFolder folder;
+    const MeshFile mesh = read_mesh(
+        folder.write("m.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+                              "float z\nproperty float u\nproperty float t\nelement face 1\nproperty list uchar int "
+                              "vertex_indices\nend_header\n0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n3 0 1 2\n"),
+        MeshFormat::Ply);
+    EXPECT_TRUE(mesh.uv.empty());
+    EXPECT_EQ(mesh.positions[mesh.triangles[0][2]], V3f(0, 1, 0));
+}
+
 TEST(MeshIo, FacesWithRepeatedVerticesAreDroppedAndCounted) {
     const SceneFolder folder;
     TestMesh mesh = pyramid(false);
@@ -333,6 +444,27 @@ TEST(MeshError, IndicesOutOfRange) {
     expect_error(folder.write("m.obj", vertices + "f 1 2 x\n"), MeshFormat::Obj, "m.obj:4: \"x\"");
     expect_error(folder.write("m.obj", vertices + "f 1 2\n"), MeshFormat::Obj, "m.obj:4: a face has 2 corners");
     expect_error(folder.write("m.obj", "v 0 0\n"), MeshFormat::Obj, "m.obj:1: ");
+}
+
+TEST(MeshError, BadTextureCoordinates) {
+    const SceneFolder folder;
+    const std::string obj_head = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", face = "\nf 1/1 2/1 3/1\n";
+    expect_error(folder.write("m.obj", obj_head + "vt 0.5" + face), MeshFormat::Obj, "m.obj:4: ");
+    expect_error(folder.write("m.obj", obj_head + "vt 0.5 nan" + face), MeshFormat::Obj, "m.obj:4: \"nan\"");
+    expect_error(folder.write("m.obj", obj_head + "vt 0.5 x" + face), MeshFormat::Obj, "m.obj:4: \"x\"");
+    expect_error(folder.write("m.obj", obj_head + "vt 0 0\nf 1/1 2/2 3/1\n"), MeshFormat::Obj,
+                 "m.obj:5: the texture coordinate index 2");
+    const std::string ply_head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\n";
+    const std::string ply_rest = "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                 "0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n3 0 1 2\n";
+    expect_error(folder.write("m.ply", ply_head + "property uchar u\nproperty float v\n" + ply_rest), MeshFormat::Ply,
+                 "the property \"u\"");
+    std::string binary = binary_ply_with_uv<float>("float", false);
+    const float bad = std::numeric_limits<float>::infinity();
+    std::memcpy(&binary[binary.find("end_header\n") + 11 + 20 + 12], &bad, sizeof(bad));
+    expect_error(folder.write("m.ply", binary), MeshFormat::Ply, "texture coordinates of vertex 1");
 }
 
 TEST(MeshError, NonManifoldMeshesNameTheEdgeOrVertex) {

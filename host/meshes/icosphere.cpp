@@ -1,6 +1,7 @@
 #include "meshes/icosphere.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -33,6 +34,22 @@ Icosphere icosahedron() {
     return result;
 }
 
+/// Turns an icosphere about z until one of the icosahedron's corners lies on the y axis. The great circle in the plane
+/// across that axis then runs along edges of all subdivisions, through both poles.
+void turn_edges_to_half_plane(Icosphere& sphere) {
+    constexpr double g = std::numbers::phi;
+    const double scale = 1.0 / std::sqrt(1.0 + g * g);
+    // Rounding is some 1e-16 and other vertices are an edge away.
+    constexpr double rounding = 1e-12;
+    for (Imath::V3d& p : sphere.positions) {
+        p = {scale * (g * p.x - p.y), scale * (p.x + g * p.y), p.z};
+        for (const int axis : {0, 1}) {
+            if (std::abs(p[axis]) < rounding)
+                p[axis] = 0.0;
+        }
+    }
+}
+
 } // namespace
 
 Icosphere make_icosphere(int subdivisions) {
@@ -50,6 +67,51 @@ Icosphere make_icosphere(int subdivisions) {
         sphere.triangles = std::move(finer);
     }
     return sphere;
+}
+
+UvSphere make_uv_sphere(int subdivisions) {
+    using std::numbers::pi;
+    Icosphere sphere = make_icosphere(subdivisions);
+    turn_edges_to_half_plane(sphere);
+    UvSphere result{sphere.positions, std::vector<Imath::V2f>(sphere.positions.size()), {}};
+    std::map<std::pair<std::uint32_t, float>, std::uint32_t> copies; // of a vertex with some u
+    std::vector<bool> has_uv(sphere.positions.size(), false);
+    const auto with_u = [&](std::uint32_t vertex, double u) {
+        const Imath::V3d& p = sphere.positions[vertex];
+        const Imath::V2f uv(static_cast<float>(u),
+                            static_cast<float>(1.0 - std::atan2(std::hypot(p.x, p.y), p.z) / pi));
+        const bool is_first = !has_uv[vertex];
+        const auto [it, is_new] =
+            copies.try_emplace({vertex, uv.x}, is_first ? vertex : static_cast<std::uint32_t>(result.positions.size()));
+        if (is_first) {
+            result.uv[vertex] = uv;
+            has_uv[vertex] = true;
+        } else if (is_new) {
+            result.positions.push_back(p);
+            result.uv.push_back(uv);
+        }
+        return it->second;
+    };
+    for (const auto& triangle : sphere.triangles) {
+        double middle_y = 0.0;
+        for (const std::uint32_t vertex : triangle)
+            middle_y += sphere.positions[vertex].y;
+        std::array<double, 3> u{};
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Imath::V3d& p = sphere.positions[triangle[i]];
+            const double turn = std::atan2(p.y, p.x) / (2.0 * pi);
+            u[i] = turn < 0.0 || (turn == 0.0 && middle_y < 0.0) ? turn + 1.0 : turn;
+            sum += p.x == 0.0 && p.y == 0.0 ? 0.0 : u[i];
+        }
+        std::array<std::uint32_t, 3> corners{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Imath::V3d& p = sphere.positions[triangle[i]];
+            corners[i] = with_u(triangle[i], p.x == 0.0 && p.y == 0.0 ? 0.5 * sum : u[i]);
+        }
+        result.triangles.push_back(corners);
+    }
+    return result;
 }
 
 } // namespace tristim

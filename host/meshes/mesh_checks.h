@@ -18,10 +18,15 @@ void check_manifold(const std::string& path, const Faces& faces, std::size_t ver
 struct ObjCounts {
     std::size_t vertices = 0;
     std::size_t faces = 0;
+    bool has_w = false; ///< a "vt" line has a third number
 };
 
 /// Throws Error "path:line: …" for numbers that are malformed or not finite and for indices that are malformed or out
-/// of range in "v", "vn" and "f" lines.
+/// of range in "v", "vt" (u and v), "vn" and "f" lines.
 ObjCounts check_obj(const std::string& path, std::string_view text);
+
+/// The text of an OBJ file with blanks for all but the first two numbers of "vt" lines: where only some have a third,
+/// OpenMesh mixes them up.
+std::string without_w(std::string text);
 
 } // namespace tristim

@@ -2,10 +2,25 @@
 
 namespace tristim {
 
+template <typename Value>
+void MeshImporter::set(std::vector<Attribute<Value>>& attributes, VertexHandle vertex, const Value& value) {
+    const auto index = static_cast<std::size_t>(vertex.idx());
+    if (vertex.idx() >= 0 && index < attributes.size())
+        attributes[index] = {value, faces.size()};
+}
+
+template <typename Value>
+std::optional<Value> MeshImporter::get(const std::vector<Attribute<Value>>& attributes, VertexHandle vertex) const {
+    const auto index = static_cast<std::size_t>(vertex.idx());
+    if (vertex.idx() < 0 || index >= attributes.size() || (by_corner_ && attributes[index].set_for != faces.size()))
+        return std::nullopt;
+    return attributes[index].value;
+}
+
 OpenMesh::VertexHandle MeshImporter::add_vertex(const OpenMesh::Vec3f& point) {
     positions.emplace_back(point[0], point[1], point[2]);
     normals_.emplace_back();
-    set_for_.push_back(0);
+    uv_.emplace_back();
     return VertexHandle(static_cast<int>(positions.size()) - 1);
 }
 
@@ -15,13 +30,8 @@ OpenMesh::VertexHandle MeshImporter::add_vertex() {
 
 OpenMesh::FaceHandle MeshImporter::add_face(const VHandles& indices) {
     std::vector<Corner> corners;
-    for (const VertexHandle handle : indices) {
-        Corner corner{handle.idx(), std::nullopt};
-        const auto vertex = static_cast<std::size_t>(handle.idx());
-        if (handle.idx() >= 0 && vertex < normals_.size() && (!normals_by_corner_ || set_for_[vertex] == faces.size()))
-            corner.normal = normals_[vertex];
-        corners.push_back(corner);
-    }
+    for (const VertexHandle handle : indices)
+        corners.push_back({handle.idx(), get(normals_, handle), get(uv_, handle)});
     faces.push_back(std::move(corners));
     return FaceHandle(static_cast<int>(faces.size()) - 1);
 }
@@ -31,15 +41,15 @@ void MeshImporter::set_point(VertexHandle vertex, const OpenMesh::Vec3f& point) 
 }
 
 void MeshImporter::set_normal(VertexHandle vertex, const OpenMesh::Vec3f& normal) {
-    const auto index = static_cast<std::size_t>(vertex.idx());
-    if (vertex.idx() < 0 || index >= normals_.size())
-        return;
-    normals_[index] = Imath::V3f(normal[0], normal[1], normal[2]);
-    set_for_[index] = faces.size();
+    set(normals_, vertex, Imath::V3f(normal[0], normal[1], normal[2]));
 }
 
 void MeshImporter::set_normal(VertexHandle vertex, const OpenMesh::Vec3d& normal) {
     set_normal(vertex, OpenMesh::Vec3f(normal));
+}
+
+void MeshImporter::set_texcoord(VertexHandle vertex, const OpenMesh::Vec2f& uv) {
+    set(uv_, vertex, Imath::V2f(uv[0], uv[1]));
 }
 
 } // namespace tristim

@@ -12,13 +12,14 @@ namespace tristim {
 /// drop faces that do not fit a half-edge structure; this one keeps them, so that they can be reported.
 class MeshImporter : public OpenMesh::IO::BaseImporter {
   public:
-    /// `normals_by_corner`: the reader sets normals anew for the corners of each face before it adds the face (OBJ),
-    /// instead of once for each vertex (PLY).
-    explicit MeshImporter(bool normals_by_corner) : normals_by_corner_(normals_by_corner) {}
+    /// `by_corner`: the reader sets normals and texture coordinates anew for the corners of each face before it adds
+    /// the face (OBJ), instead of once for each vertex (PLY).
+    explicit MeshImporter(bool by_corner) : by_corner_(by_corner) {}
 
     struct Corner {
         int vertex; ///< as in the file: perhaps out of range
         std::optional<Imath::V3f> normal;
+        std::optional<Imath::V2f> uv;
     };
 
     std::vector<Imath::V3f> positions;
@@ -35,6 +36,7 @@ class MeshImporter : public OpenMesh::IO::BaseImporter {
     void set_point(VertexHandle vertex, const OpenMesh::Vec3f& point) override;
     void set_normal(VertexHandle vertex, const OpenMesh::Vec3f& normal) override;
     void set_normal(VertexHandle vertex, const OpenMesh::Vec3d& normal) override;
+    void set_texcoord(VertexHandle vertex, const OpenMesh::Vec2f& uv) override;
     size_t n_vertices() const override { return positions.size(); }
     size_t n_faces() const override { return faces.size(); }
     size_t n_edges() const override { return 0; }
@@ -50,7 +52,6 @@ class MeshImporter : public OpenMesh::IO::BaseImporter {
     void set_color(VertexHandle, const OpenMesh::Vec4uc&) override {}
     void set_color(VertexHandle, const OpenMesh::Vec3f&) override {}
     void set_color(VertexHandle, const OpenMesh::Vec4f&) override {}
-    void set_texcoord(VertexHandle, const OpenMesh::Vec2f&) override {}
     void set_status(VertexHandle, const OpenMesh::Attributes::StatusInfo&) override {}
     void set_next(HalfedgeHandle, HalfedgeHandle) override {}
     void set_face(HalfedgeHandle, FaceHandle) override {}
@@ -74,9 +75,21 @@ class MeshImporter : public OpenMesh::IO::BaseImporter {
     void add_texture_information(int, std::string) override {}
 
   private:
-    bool normals_by_corner_;
-    std::vector<std::optional<Imath::V3f>> normals_; ///< per vertex, as set last
-    std::vector<std::size_t> set_for_;               ///< per vertex, the number of faces when its normal was set
+    /// What the reader has told of a vertex beside its position.
+    template <typename Value>
+    struct Attribute {
+        std::optional<Value> value; ///< as set last
+        std::size_t set_for = 0;    ///< the number of faces when it was set
+    };
+
+    template <typename Value>
+    void set(std::vector<Attribute<Value>>& attributes, VertexHandle vertex, const Value& value);
+    template <typename Value>
+    std::optional<Value> get(const std::vector<Attribute<Value>>& attributes, VertexHandle vertex) const;
+
+    bool by_corner_;
+    std::vector<Attribute<Imath::V3f>> normals_; ///< per vertex
+    std::vector<Attribute<Imath::V2f>> uv_;
 };
 
 } // namespace tristim

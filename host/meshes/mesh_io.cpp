@@ -39,6 +39,7 @@ void import_ply(const std::string& path, const std::string& bytes, MeshImporter&
     // The reader does not look whether its reads succeed; the exception stops it where the file ends or is no number.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
+    options += OpenMesh::IO::Options::VertexTexCoord;
     bool whole = false;
     try {
         whole = OpenMesh::IO::IOManager().read(stream, "ply", importer, options);
@@ -52,8 +53,9 @@ void import_ply(const std::string& path, const std::string& bytes, MeshImporter&
 
 std::size_t import_obj(const std::string& path, const std::string& bytes, MeshImporter& importer) {
     const ObjCounts counts = check_obj(path, bytes);
-    std::istringstream stream(bytes);
+    std::istringstream stream(counts.has_w ? without_w(bytes) : bytes);
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
+    options += OpenMesh::IO::Options::VertexTexCoord;
     if (!OpenMesh::IO::IOManager().read(stream, "obj", importer, options) ||
         importer.positions.size() != counts.vertices)
         fail("{}: the OBJ file is malformed", path);
@@ -75,6 +77,8 @@ void check_vertices(const std::string& path, const MeshImporter& importer, int f
                      corner.vertex, f, importer.positions.size());
             if (corner.normal && !std::isfinite(corner.normal->length2()))
                 fail("{}: the normal of vertex {} is not finite", path, corner.vertex + first_index);
+            if (corner.uv && !std::isfinite(corner.uv->length2()))
+                fail("{}: the texture coordinates of vertex {} are not finite", path, corner.vertex + first_index);
         }
     }
 }
@@ -95,29 +99,34 @@ std::vector<std::vector<MeshImporter::Corner>> proper_faces(const MeshImporter& 
     return result;
 }
 
-/// Gives every (vertex, normal) pair an output vertex of its own.
+/// Gives every vertex with one normal and one pair of texture coordinates an output vertex of its own.
 class VertexTable {
   public:
-    VertexTable(const MeshImporter& importer, bool with_normals, MeshFile& mesh)
-        : importer_(importer), with_normals_(with_normals), mesh_(mesh), copies_(importer.positions.size()) {}
+    VertexTable(const MeshImporter& importer, bool with_normals, bool with_uv, MeshFile& mesh)
+        : importer_(importer), with_normals_(with_normals), with_uv_(with_uv), mesh_(mesh),
+          copies_(importer.positions.size()) {}
 
     std::uint32_t index(const MeshImporter::Corner& corner) {
         const auto vertex = static_cast<std::size_t>(corner.vertex);
         const Imath::V3f normal = corner.normal.value_or(Imath::V3f(0.0f));
+        const Imath::V2f uv = corner.uv.value_or(Imath::V2f(0.0f));
         for (const std::uint32_t copy : copies_[vertex]) {
-            if (!with_normals_ || mesh_.normals[copy] == normal)
+            if ((!with_normals_ || mesh_.normals[copy] == normal) && (!with_uv_ || mesh_.uv[copy] == uv))
                 return copy;
         }
         copies_[vertex].push_back(static_cast<std::uint32_t>(mesh_.positions.size()));
         mesh_.positions.push_back(importer_.positions[vertex]);
         if (with_normals_)
             mesh_.normals.push_back(normal);
+        if (with_uv_)
+            mesh_.uv.push_back(uv);
         return copies_[vertex].back();
     }
 
   private:
     const MeshImporter& importer_;
     bool with_normals_;
+    bool with_uv_;
     MeshFile& mesh_;
     std::vector<std::vector<std::uint32_t>> copies_; ///< per vertex of the file
 };
@@ -137,10 +146,13 @@ void complete_normals(const MeshImporter& importer, std::vector<MeshImporter::Co
 
 MeshFile to_triangles(const MeshImporter& importer, std::vector<std::vector<MeshImporter::Corner>> faces) {
     MeshFile mesh;
-    const bool with_normals = std::any_of(faces.begin(), faces.end(), [](const auto& face) {
-        return std::any_of(face.begin(), face.end(), [](const auto& corner) { return corner.normal.has_value(); });
-    });
-    VertexTable table(importer, with_normals, mesh);
+    const auto some_corner = [&faces](auto condition) {
+        return std::any_of(faces.begin(), faces.end(),
+                           [&](const auto& face) { return std::any_of(face.begin(), face.end(), condition); });
+    };
+    const bool with_normals = some_corner([](const auto& corner) { return corner.normal.has_value(); });
+    const bool with_uv = some_corner([](const auto& corner) { return corner.uv.has_value(); });
+    VertexTable table(importer, with_normals, with_uv, mesh);
     for (std::size_t f = 0; f < faces.size(); ++f) {
         if (with_normals)
             complete_normals(importer, faces[f]);

@@ -15,13 +15,15 @@ enum class MeshFormat { Obj, Ply };
 struct MeshFile {
     std::vector<Imath::V3f> positions;
     std::vector<Imath::V3f> normals; ///< empty if the file has none, else one per position
+    std::vector<Imath::V2f> uv; ///< texture coordinates, v upwards: empty if the file has none, else one per position
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<std::uint32_t> faces; ///< the file's face that each triangle is part of
     int degenerate_faces = 0;         ///< faces with fewer than three different vertices, left out
 };
 
 /// Reads OBJ or PLY (ASCII, binary of either byte order) by OpenMesh. Polygons become triangles; a vertex that has
-/// different normals in different faces (OBJ) becomes several.
+/// different normals or texture coordinates in different faces (OBJ) becomes several. Corners without texture
+/// coordinates in a file that has some get (0, 0).
 /// Throws Error naming the file if it is missing, unreadable, malformed or cut short, has no triangles, non-finite
 /// vertices or indices out of range, or is not a manifold: an edge with more than two faces, two neighbours of opposite
 /// orientation, or a vertex whose faces form several fans.

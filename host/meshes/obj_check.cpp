@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -37,8 +38,10 @@ struct Position {
     std::size_t line;
 };
 
-void check_numbers(const Position& at, std::string_view keyword, std::string_view line) {
-    for (int i = 0; i < 3; ++i) {
+/// Leaves what follows the numbers in `line`.
+void check_numbers(const Position& at, std::string_view keyword, std::string_view& line) {
+    const int count = keyword == "vt" ? 2 : 3;
+    for (int i = 0; i < count; ++i) {
         const std::string_view word = take_word(line);
         const auto value = parse<float>(word);
         if (!value || !std::isfinite(*value))
@@ -111,8 +114,9 @@ ObjCounts check_obj(const std::string& path, std::string_view text) {
         count(current, keyword);
         if (!keyword.empty() && line.ends_with('\\') && keyword.front() != '#')
             fail("{}:{}: a line that goes on after \"\\\" is not supported", path, number);
-        if (keyword == "v" || keyword == "vn") {
+        if (keyword == "v" || keyword == "vt" || keyword == "vn") {
             check_numbers(at, keyword, line);
+            counts.has_w |= keyword == "vt" && !take_word(line).empty();
         } else if (keyword == "f") {
             check_face(at, line, current, totals);
             ++counts.faces;
@@ -120,6 +124,20 @@ ObjCounts check_obj(const std::string& path, std::string_view text) {
     });
     counts.vertices = totals.v;
     return counts;
+}
+
+std::string without_w(std::string text) {
+    std::vector<std::string_view> surplus;
+    for_each_line(text, [&](std::size_t, std::string_view keyword, std::string_view line) {
+        if (keyword != "vt")
+            return;
+        take_word(line);
+        take_word(line);
+        surplus.push_back(line);
+    });
+    for (const std::string_view part : surplus)
+        std::fill_n(text.begin() + (part.data() - text.data()), part.size(), ' ');
+    return text;
 }
 
 } // namespace tristim

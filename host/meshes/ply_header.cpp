@@ -3,7 +3,9 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -20,6 +22,9 @@ const std::set<std::string> integer_types = {"char", "uchar", "short", "ushort",
 const std::set<std::string> count_types = {"uchar", "uint8", "uint16", "int"};
 const std::set<std::string> position_names = {"x", "y", "z"};
 const std::set<std::string> normal_names = {"nx", "ny", "nz"};
+/// Names that pbrt takes for texture coordinates; OpenMesh knows the first pair.
+const std::array<std::array<std::string, 2>, 4> uv_names = {
+    {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
 
 class HeaderReader {
   public:
@@ -29,10 +34,15 @@ class HeaderReader {
 
   private:
     struct Element {
+        struct Property {
+            std::string type; ///< with the types of a list's entries
+            std::string name;
+        };
         std::string name;
         std::size_t count = 0;
-        std::set<std::string> properties;
-        std::vector<std::string> lines;
+        std::vector<Property> properties;
+
+        bool has(const std::string& property) const;
     };
 
     template <typename... Args>
@@ -47,6 +57,8 @@ class HeaderReader {
     void read_list();
     const Element* find(const std::string& name) const;
     void check_elements() const;
+    /// The names of the properties that are read, with the names that OpenMesh knows them by.
+    std::map<std::string, std::string> needed_properties(const Element& element) const;
     std::string rewritten() const;
 
     const std::string& path_;
@@ -101,8 +113,7 @@ void HeaderReader::read_list() {
     // OpenMesh 9 forgets what stands before, and would take its values for indices.
     if (!element.properties.empty())
         refuse("\"{}\" must be the first property of \"face\" and the only list", words_[4]);
-    element.properties.insert("vertex_indices");
-    element.lines.push_back(fmt::format("property list {} {} vertex_indices", words_[2], words_[3]));
+    element.properties.push_back({fmt::format("list {} {}", words_[2], words_[3]), "vertex_indices"});
 }
 
 void HeaderReader::read_property() {
@@ -119,10 +130,13 @@ void HeaderReader::read_property() {
     const bool is_needed = element.name == "vertex" && (position_names.contains(name) || normal_names.contains(name));
     if (is_needed && !real_types.contains(words_[1]))
         refuse("the property \"{}\" has the type \"{}\" where \"float\" or \"double\" is expected", name, words_[1]);
-    if (!element.properties.insert(name).second)
+    if (element.has(name))
         refuse("the property \"{}\" is given twice", name);
-    element.lines.push_back(
-        fmt::format("property {} {}", words_[1], is_needed ? name : fmt::format("ignored{}", element.lines.size())));
+    element.properties.push_back({words_[1], name});
+}
+
+bool HeaderReader::Element::has(const std::string& property) const {
+    return std::any_of(properties.begin(), properties.end(), [&](const Property& p) { return p.name == property; });
 }
 
 const HeaderReader::Element* HeaderReader::find(const std::string& name) const {
@@ -135,22 +149,52 @@ void HeaderReader::check_elements() const {
     const Element* face = find("face");
     if (format_.empty() || !vertex || !face || face < vertex)
         fail("{}: the PLY header needs a format, an element \"vertex\" and after it an element \"face\"", path_);
-    const auto has = [vertex](const std::string& name) { return vertex->properties.contains(name); };
+    const auto has = [vertex](const std::string& name) { return vertex->has(name); };
     if (!std::all_of(position_names.begin(), position_names.end(), has))
         fail("{}: the vertices of this PLY file lack \"x\", \"y\" or \"z\"", path_);
     if (std::any_of(normal_names.begin(), normal_names.end(), has) &&
         !std::all_of(normal_names.begin(), normal_names.end(), has))
         fail("{}: the vertices of this PLY file have some of \"nx\", \"ny\" and \"nz\", but not all", path_);
-    if (!face->properties.contains("vertex_indices"))
+    if (!face->has("vertex_indices"))
         fail("{}: the faces of this PLY file lack \"vertex_indices\"", path_);
+}
+
+std::map<std::string, std::string> HeaderReader::needed_properties(const Element& element) const {
+    std::map<std::string, std::string> needed;
+    if (element.name == "face")
+        needed["vertex_indices"] = "vertex_indices";
+    if (element.name != "vertex")
+        return needed;
+    for (const auto& names : {position_names, normal_names}) {
+        for (const std::string& name : names)
+            needed[name] = name;
+    }
+    for (const auto& names : uv_names) {
+        if (!element.has(names[0]) || !element.has(names[1]))
+            continue;
+        for (const auto& [type, name] : element.properties) {
+            if ((name == names[0] || name == names[1]) && !real_types.contains(type))
+                fail("{}: the property \"{}\" has the type \"{}\" where \"float\" or \"double\" is expected", path_,
+                     name, type);
+        }
+        for (std::size_t i = 0; i < 2; ++i)
+            needed[names[i]] = uv_names[0][i];
+        break;
+    }
+    return needed;
 }
 
 std::string HeaderReader::rewritten() const {
     std::string text = fmt::format("ply\nformat {} 1.0\n", format_);
     for (const Element& element : elements_) {
         text += fmt::format("element {} {}\n", element.name, element.count);
-        for (const std::string& line : element.lines)
-            text += line + "\n";
+        const std::map<std::string, std::string> needed = needed_properties(element);
+        for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            const auto& [type, name] = element.properties[i];
+            const auto it = needed.find(name);
+            text +=
+                fmt::format("property {} {}\n", type, it == needed.end() ? fmt::format("ignored{}", i) : it->second);
+        }
         // OpenMesh reads nothing after the faces.
         if (element.name == "face")
             break;

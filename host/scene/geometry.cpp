@@ -81,6 +81,7 @@ BakedMesh bake(const Geometry& geometry) {
     }
     if (!geometry.normals.empty())
         result.mesh.normals = unit_normals(geometry);
+    result.mesh.uv = geometry.uv;
     for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
         if (is_degenerate(result.mesh.positions, geometry.triangles[i])) {
             ++result.degenerate;

@@ -12,6 +12,7 @@ namespace tristim {
 struct Geometry {
     std::vector<V3d> positions;
     std::vector<V3d> normals; ///< empty or one per position; need not be unit
+    std::vector<V2f> uv;      ///< empty or one per position
     std::vector<std::array<std::uint32_t, 3>> triangles;
     /// Which pbrt shape each triangle belongs to: pbrt makes one light of each triangle or bilinear patch, and "power"
     /// is meant for each of them.

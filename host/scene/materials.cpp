@@ -1,5 +1,7 @@
 #include "scene/materials.h"
 
+#include "scene/films.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +9,35 @@ namespace tristim {
 
 namespace {
 
-void require_smooth(ParameterList& parameters) {
-    for (const char* name : {"roughness", "uroughness", "vroughness"}) {
-        if (parameters.number(name, 0.0) != 0.0)
-            fail_at(parameters.where(name), "\"{}\" of {} must be 0: rough surfaces are not supported", name,
-                    parameters.owner());
+/// GGX's α along ∂p/∂u and across it from "uroughness" and "vroughness", as pbrt-v4 has them.
+void set_roughness(Material& material, ParameterList& parameters) {
+    const double both = parameters.number("roughness", 0.0);
+    const bool remap = parameters.boolean("remaproughness", true);
+    const auto alpha = [&](const char* name) {
+        const double roughness = parameters.number(name, both);
+        if (roughness < 0.0 || roughness > 1.0)
+            fail_at(parameters.where(parameters.has(name) ? name : "roughness"),
+                    "the roughness of {} is {}, but it must lie in [0, 1]", parameters.owner(), roughness);
+        return remap ? std::sqrt(roughness) : roughness;
+    };
+    material.alpha_u = alpha("uroughness");
+    material.alpha_v = alpha("vroughness");
+    // pbrt's limits: below the first a surface is smooth, and lobes are not made narrower than the second.
+    constexpr double smooth = 1e-3, narrowest = 1e-4;
+    const bool is_smooth = std::max(material.alpha_u, material.alpha_v) < smooth;
+    for (double* a : {&material.alpha_u, &material.alpha_v})
+        *a = is_smooth ? 0.0 : std::max(*a, narrowest);
+}
+
+/// The real index "eta", 1.5 if it is not given.
+Spectrum real_index(ParameterList& parameters, const PathResolver& resolve) {
+    if (parameters.is_type("eta", "float")) {
+        const double eta = parameters.number("eta", 1.5);
+        if (eta <= 0.0)
+            fail_at(parameters.where("eta"), "the refractive index \"eta\" is {}, but it must be positive", eta);
+        return Spectrum::constant(eta);
     }
-    parameters.boolean("remaproughness", true);
+    return index_parameter(parameters, "eta", false, resolve).value_or(Spectrum::constant(1.5));
 }
 
 /// k of a conductor with eta = 1 that reflects r at normal incidence: r = k²/(4 + k²), so k = 2 √r / √(1 − r).
@@ -47,7 +71,8 @@ void set_conductor(Material& material, ParameterList& parameters, const PathReso
 
 } // namespace
 
-Material make_material(const std::string& kind, ParameterList& parameters, const PathResolver& resolve) {
+Material make_material(const std::string& kind, ParameterList& parameters, const PathResolver& resolve,
+                       TextureTable& textures) {
     Material material;
     material.name = kind;
     if (kind == "diffuse") {
@@ -56,21 +81,26 @@ Material make_material(const std::string& kind, ParameterList& parameters, const
             material.reflectance = *reflectance;
     } else if (kind == "dielectric") {
         material.kind = Material::Kind::Dielectric;
-        if (parameters.is_type("eta", "float")) {
-            const double eta = parameters.number("eta", 1.5);
-            if (eta <= 0.0)
-                fail_at(parameters.where("eta"), "the refractive index \"eta\" is {}, but it must be positive", eta);
-            material.eta = Spectrum::constant(eta);
-        } else if (const auto eta = index_parameter(parameters, "eta", false, resolve)) {
-            material.eta = *eta;
-        }
-        require_smooth(parameters);
+        material.eta = real_index(parameters, resolve);
+        set_roughness(material, parameters);
+        if (material.alpha_u > 0.0 && material.eta.is_constant() && material.eta.minimum(lambda_min_nm, lambda_max_nm) == 1.0)
+            fail_at(parameters.where(), "{} is rough, and so its \"eta\" must not be 1", parameters.owner());
     } else if (kind == "conductor") {
         material.kind = Material::Kind::Conductor;
         set_conductor(material, parameters, resolve);
-        require_smooth(parameters);
+        set_roughness(material, parameters);
     } else {
         fail_at(parameters.where(), "the material \"{}\" is not supported", kind);
+    }
+    material.film = film_parameters(parameters, resolve, textures);
+    if (material.kind == Material::Kind::Diffuse && parameters.has("eta")) {
+        if (material.film.layers.empty())
+            fail_at(parameters.where("eta"), "\"eta\" of {} is the index under a film, but it has no \"filmthickness\"",
+                    parameters.owner());
+        material.eta = real_index(parameters, resolve);
+        if (material.eta.minimum(lambda_min_nm, lambda_max_nm) < 1.0)
+            fail_at(parameters.where("eta"), "the index \"eta\" under the film of {} is {}, but it must be at least 1",
+                    parameters.owner(), material.eta.minimum(lambda_min_nm, lambda_max_nm));
     }
     parameters.finish();
     return material;

@@ -39,8 +39,8 @@ Parameter* ParameterList::typed(const std::string& name, std::initializer_list<c
     if (!parameter)
         return nullptr;
     if (parameter->type == "texture")
-        fail_at(parameter->where, "the parameter \"{}\" of {} is a texture, and textures are not supported", name,
-                owner_);
+        fail_at(parameter->where, "the parameter \"{}\" of {} is a texture, and only \"filmthickness\" may be one",
+                name, owner_);
     if (std::find(types.begin(), types.end(), parameter->type) == types.end())
         fail_at(parameter->where, "the parameter \"{}\" of {} has type \"{}\" where \"{}\" is expected", name, owner_,
                 parameter->type, *types.begin());
@@ -86,10 +86,33 @@ std::string ParameterList::text(const std::string& name, const std::string& fall
 }
 
 V3d ParameterList::point(const std::string& name, const V3d& fallback) {
-    const std::vector<V3d> values = points(name);
+    return single_triple(name, points(name), fallback);
+}
+
+V3d ParameterList::vector(const std::string& name, const V3d& fallback) {
+    return single_triple(name, triples(name, {"vector3"}), fallback);
+}
+
+V3d ParameterList::single_triple(const std::string& name, const std::vector<V3d>& values, const V3d& fallback) const {
     if (values.size() > 1)
-        fail_at(where(name), "the parameter \"{}\" takes one point, but {} are given", name, values.size());
+        fail_at(where(name), "the parameter \"{}\" takes three numbers, but {} are given", name, 3 * values.size());
     return values.empty() ? fallback : values.front();
+}
+
+std::string ParameterList::texture(const std::string& name) {
+    if (!is_type(name, "texture"))
+        return {};
+    Parameter* parameter = find(name);
+    parameter->used = true;
+    const std::string& texture = single(*parameter, parameter->strings);
+    if (texture.empty())
+        fail_at(parameter->where, "the parameter \"{}\" of {} names no texture", name, owner_);
+    return texture;
+}
+
+std::vector<std::string> ParameterList::texts(const std::string& name) {
+    const Parameter* parameter = typed(name, {"string"});
+    return parameter ? parameter->strings : std::vector<std::string>{};
 }
 
 std::vector<double> ParameterList::numbers(const std::string& name) {
@@ -111,6 +134,19 @@ std::vector<V3d> ParameterList::points(const std::string& name) {
 
 std::vector<V3d> ParameterList::normals(const std::string& name) {
     return triples(name, {"normal", "normal3"});
+}
+
+std::vector<V2d> ParameterList::points2(const std::string& name) {
+    std::vector<V2d> result;
+    const Parameter* parameter = typed(name, {"point2"});
+    if (!parameter)
+        return result;
+    const std::vector<double>& values = parameter->numbers;
+    if (values.empty() || values.size() % 2 != 0)
+        fail_at(parameter->where, "the parameter \"{}\" takes pairs of numbers, but {} are given", name, values.size());
+    for (std::size_t i = 0; i < values.size(); i += 2)
+        result.emplace_back(values[i], values[i + 1]);
+    return result;
 }
 
 std::vector<V3d> ParameterList::triples(const std::string& name, std::initializer_list<const char*> types) {

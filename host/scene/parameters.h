@@ -9,6 +9,7 @@
 
 namespace tristim {
 
+using Imath::V2d;
 using Imath::V3d;
 
 /// One "type name" value(s) of a directive. Exactly one of the lists is filled, by type.
@@ -45,12 +46,18 @@ class ParameterList {
     bool boolean(const std::string& name, bool fallback);
     std::string text(const std::string& name, const std::string& fallback);
     V3d point(const std::string& name, const V3d& fallback);
+    /// A vector3.
+    V3d vector(const std::string& name, const V3d& fallback);
+    /// The name of a texture, empty if the parameter is absent or has another type.
+    std::string texture(const std::string& name);
 
     /// Empty if absent.
     std::vector<double> numbers(const std::string& name);
     std::vector<int> integers(const std::string& name);
     std::vector<V3d> points(const std::string& name);
     std::vector<V3d> normals(const std::string& name);
+    std::vector<V2d> points2(const std::string& name);
+    std::vector<std::string> texts(const std::string& name);
 
     /// A "rgb", "spectrum" or "blackbody" parameter, or null if absent.
     const Parameter* spectrum(const std::string& name);
@@ -71,6 +78,7 @@ class ParameterList {
     Parameter* find(const std::string& name);
     const Parameter* find(const std::string& name) const;
     Parameter* typed(const std::string& name, std::initializer_list<const char*> types);
+    V3d single_triple(const std::string& name, const std::vector<V3d>& values, const V3d& fallback) const;
     std::vector<V3d> triples(const std::string& name, std::initializer_list<const char*> types);
 
     std::string owner_;

@@ -112,12 +112,24 @@ void SceneBuilder::object_instance(const std::string& name, const SourceLocation
     }
 }
 
+void SceneBuilder::texture(const std::string& name, const std::string& type, const std::string& kind,
+                           ParameterList parameters) {
+    require_world("Texture", parameters.where());
+    const auto resolve = [this](const std::string& file, const SourceLocation& from) {
+        return resolve_path(file, from);
+    };
+    std::vector<std::string> remarks;
+    textures_.define(name, type, kind, parameters, state_.ctm, resolve, remarks);
+    for (const std::string& remark : remarks)
+        note(parameters.where(), remark);
+}
+
 void SceneBuilder::material(const std::string& kind, ParameterList parameters) {
     require_world("Material", parameters.where());
     const auto resolve = [this](const std::string& name, const SourceLocation& from) {
         return resolve_path(name, from);
     };
-    scene_.materials.push_back(make_material(kind, parameters, resolve));
+    scene_.materials.push_back(make_material(kind, parameters, resolve, textures_));
     state_.material = static_cast<int>(scene_.materials.size()) - 1;
 }
 
@@ -142,7 +154,7 @@ void SceneBuilder::make_named_material(const std::string& name, ParameterList pa
         return resolve_path(file, from);
     };
     Material& material = scene_.materials[static_cast<std::size_t>(entry.index)];
-    material = make_material(kind, parameters, resolve);
+    material = make_material(kind, parameters, resolve, textures_);
     material.name = name;
     entry.defined = true;
 }
@@ -203,6 +215,8 @@ std::vector<Mesh> split_patches(const BakedMesh& baked) {
             mesh.positions.push_back(baked.mesh.positions[vertex]);
             if (!baked.mesh.normals.empty())
                 mesh.normals.push_back(baked.mesh.normals[vertex]);
+            if (!baked.mesh.uv.empty())
+                mesh.uv.push_back(baked.mesh.uv[vertex]);
         }
         mesh.triangles.push_back(triangle);
     }
@@ -236,6 +250,7 @@ void SceneBuilder::add_shape(const Geometry& world, int material, const AreaLigh
             light = static_cast<int>(scene_.lights.size()) - 1;
         }
         scene_.shapes.push_back({std::move(mesh), material < 0 ? default_material() : material, light});
+        shape_where_.push_back(where);
     }
 }
 
@@ -261,6 +276,36 @@ void SceneBuilder::remove_unused_materials() {
     scene_.materials = std::move(used);
 }
 
+/// A bilinear thickness was checked within its unit square; beyond it, it goes on and may fall below 0.
+void SceneBuilder::check_thickness(const Shape& shape, const SourceLocation& where) const {
+    const Material& material = scene_.materials[static_cast<std::size_t>(shape.material)];
+    if (material.film.thickness_texture < 0)
+        return;
+    const FloatTexture& texture = textures_.used(material.film.thickness_texture);
+    if (texture.pattern->kind != Texture::Kind::Bilinear)
+        return;
+    const auto [low, high] = value_range(*texture.pattern);
+    // Rounding at the edge of the unit square, where a corner may be 0, is no error.
+    constexpr double rounding = 1e-6;
+    const double least = least_value(*texture.pattern, shape.mesh);
+    if (least < -rounding * (high - low))
+        fail_at(where, "the film on this shape would be {} nm thick somewhere: the texture \"{}\" is negative there",
+                least, texture.name);
+}
+
+void SceneBuilder::collect_textures() {
+    std::map<int, int> renamed;
+    for (Material& material : scene_.materials) {
+        int& index = material.film.thickness_texture;
+        if (index < 0)
+            continue;
+        const auto [it, is_new] = renamed.try_emplace(index, static_cast<int>(scene_.textures.size()));
+        if (is_new)
+            scene_.textures.push_back(*textures_.used(index).pattern);
+        index = it->second;
+    }
+}
+
 Scene SceneBuilder::finish() {
     if (!saved_.empty())
         fail_at(saved_.back().where, "the block that begins here is never closed");
@@ -278,7 +323,10 @@ Scene SceneBuilder::finish() {
                                  [](const Light& light) { return light.kind == Light::Kind::Infinite; });
     if (scene_.shapes.empty() && !sky)
         fail("{}: the scene has no geometry", scene_.path);
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i)
+        check_thickness(scene_.shapes[i], shape_where_[i]);
     remove_unused_materials();
+    collect_textures();
     return std::move(scene_);
 }
 

@@ -5,6 +5,7 @@
 #include "scene/parameters.h"
 #include "scene/scene.h"
 #include "scene/source_location.h"
+#include "scene/textures.h"
 
 #include <map>
 #include <memory>
@@ -45,6 +46,7 @@ class SceneBuilder {
     void option(const std::string& name, ParameterList parameters);
     void color_space(const std::string& name, const SourceLocation& where);
 
+    void texture(const std::string& name, const std::string& type, const std::string& kind, ParameterList parameters);
     void material(const std::string& kind, ParameterList parameters);
     void make_named_material(const std::string& name, ParameterList parameters);
     void named_material(const std::string& name, const SourceLocation& where);
@@ -90,16 +92,20 @@ class SceneBuilder {
     void add_shape(const Geometry& world, int material, const AreaLight* area_light, const SourceLocation& where);
     int default_material();
     void remove_unused_materials();
+    void check_thickness(const Shape& shape, const SourceLocation& where) const;
+    void collect_textures();
 
     Scene scene_;
     std::string folder_;
     GraphicsState state_;
     std::vector<SavedState> saved_;
     std::map<std::string, M44d> coordinate_systems_;
+    TextureTable textures_;
     std::map<std::string, NamedMaterial> named_materials_;
     std::map<std::string, std::vector<ObjectPart>> objects_;
-    std::string open_object_;   ///< the name between ObjectBegin and ObjectEnd
-    int default_material_ = -1; ///< index into scene_.materials once a shape needs it
+    std::vector<SourceLocation> shape_where_; ///< of scene_.shapes
+    std::string open_object_;                 ///< the name between ObjectBegin and ObjectEnd
+    int default_material_ = -1;               ///< index into scene_.materials once a shape needs it
     bool in_world_ = false;
     bool has_camera_ = false;
 };

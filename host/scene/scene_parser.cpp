@@ -25,8 +25,8 @@ std::optional<double> parse_number(const std::string& text) {
 }
 
 /// Directives of pbrt-v4 that this program knows of but does not support.
-const std::set<std::string> unsupported_directives = {"ActiveTransform", "Attribute",      "Import", "MakeNamedMedium",
-                                                      "MediumInterface", "TransformTimes", "Texture"};
+const std::set<std::string> unsupported_directives = {"ActiveTransform", "Attribute",       "Import",
+                                                      "MakeNamedMedium", "MediumInterface", "TransformTimes"};
 
 const std::set<std::string> number_types = {"integer", "float",  "point2",  "point3", "vector2",
                                             "vector3", "normal", "normal3", "rgb",    "blackbody"};
@@ -163,6 +163,13 @@ bool SceneParser::plugin_directive(const Token& word) {
         const std::string name = value.name;
         option.add(std::move(value));
         builder_.option(name, std::move(option));
+        return true;
+    }
+    if (word.text == "Texture") {
+        const std::string name = expect_string(word);
+        const std::string type = expect_string(word);
+        const std::string kind = expect_string(word);
+        builder_.texture(name, type, kind, parameters(fmt::format("Texture \"{}\"", name), word.where));
         return true;
     }
     const auto handler = handlers.find(word.text);

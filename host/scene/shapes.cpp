@@ -26,6 +26,18 @@ void check_indices(const std::vector<int>& indices, std::size_t vertices, const 
     }
 }
 
+void read_uv(Geometry& geometry, ParameterList& parameters) {
+    const char* const name = parameters.has("uv") ? "uv" : "st";
+    for (const V2d& uv : parameters.points2(name)) {
+        geometry.uv.emplace_back(uv);
+        if (!std::isfinite(geometry.uv.back().x) || !std::isfinite(geometry.uv.back().y))
+            fail_at(parameters.where(name), "\"{}\" holds ({}, {}), which is too large", name, uv.x, uv.y);
+    }
+    if (!geometry.uv.empty() && geometry.uv.size() != geometry.positions.size())
+        fail_at(parameters.where(name), "\"{}\" has {} pairs for {} vertices", name, geometry.uv.size(),
+                geometry.positions.size());
+}
+
 /// Vertices, normals and indices as "trianglemesh" and "bilinearmesh" share them.
 std::vector<int> read_vertices(Geometry& geometry, ParameterList& parameters, std::size_t corners) {
     geometry.positions = parameters.points("P");
@@ -47,7 +59,8 @@ std::vector<int> read_vertices(Geometry& geometry, ParameterList& parameters, st
         fail_at(parameters.where("indices"), "\"indices\" takes groups of {}, but {} are given", corners,
                 indices.size());
     check_indices(indices, geometry.positions.size(), parameters.where("indices"));
-    for (const char* name : {"uv", "S", "faceIndices"})
+    read_uv(geometry, parameters);
+    for (const char* name : {"S", "faceIndices"})
         parameters.ignore(name);
     return indices;
 }
@@ -93,11 +106,37 @@ void check_patch(const std::vector<V3d>& positions, const int* index, const Sour
     }
 }
 
+/// pbrt's coordinates of a patch's corners p00, p10, p01, p11, where the mesh has none: a vertex that is another corner
+/// in another patch becomes several.
+void set_patch_uv(Geometry& geometry, std::vector<int>& indices) {
+    const std::array<V2f, 4> corners{V2f(0, 0), V2f(1, 0), V2f(0, 1), V2f(1, 1)};
+    constexpr int unset = -1;
+    std::vector<std::array<int, 4>> copies(geometry.positions.size(), {unset, unset, unset, unset});
+    geometry.uv.resize(geometry.positions.size());
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        const auto vertex = static_cast<std::size_t>(indices[i]);
+        std::array<int, 4>& copy = copies[vertex];
+        if (copy == std::array<int, 4>{unset, unset, unset, unset}) {
+            copy[i % 4] = indices[i];
+            geometry.uv[vertex] = corners[i % 4];
+        } else if (copy[i % 4] == unset) {
+            copy[i % 4] = static_cast<int>(geometry.positions.size());
+            geometry.positions.push_back(V3d(geometry.positions[vertex]));
+            if (!geometry.normals.empty())
+                geometry.normals.push_back(V3d(geometry.normals[vertex]));
+            geometry.uv.push_back(corners[i % 4]);
+        }
+        indices[i] = copy[i % 4];
+    }
+}
+
 Geometry bilinear_mesh(ParameterList& parameters) {
     Geometry geometry;
     if (parameters.has("emissionfilename"))
         fail_at(parameters.where("emissionfilename"), "\"emissionfilename\": image lights are not supported");
-    const std::vector<int> indices = read_vertices(geometry, parameters, 4);
+    std::vector<int> indices = read_vertices(geometry, parameters, 4);
+    if (geometry.uv.empty())
+        set_patch_uv(geometry, indices);
     for (std::size_t i = 0; i < indices.size(); i += 4) {
         const int* patch = &indices[i];
         check_patch(geometry.positions, patch, parameters.where("P"));
@@ -117,10 +156,11 @@ Geometry sphere(ParameterList& parameters) {
         fail_at(parameters.where(), "{}: only full spheres are supported, without \"zmin\", \"zmax\" and \"phimax\"",
                 parameters.owner());
     Geometry geometry;
-    const Icosphere unit = make_icosphere(sphere_subdivisions);
+    const UvSphere unit = make_uv_sphere(sphere_subdivisions);
     geometry.normals = unit.positions;
     for (const V3d& position : unit.positions)
         geometry.positions.push_back(position * radius);
+    geometry.uv = unit.uv;
     geometry.triangles = unit.triangles;
     geometry.patches.assign(geometry.triangles.size(), 0);
     return geometry;
@@ -140,6 +180,7 @@ Geometry mesh_file(const std::string& kind, ParameterList& parameters, const Pat
     Geometry geometry;
     geometry.positions.assign(file.positions.begin(), file.positions.end());
     geometry.normals.assign(file.normals.begin(), file.normals.end());
+    geometry.uv = file.uv;
     geometry.triangles = file.triangles;
     geometry.patches = file.faces;
     return geometry;

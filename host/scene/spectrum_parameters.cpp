@@ -13,10 +13,6 @@ namespace {
 /// How an "rgb" triple becomes a spectrum; pbrt's SpectrumType.
 using RgbUpsampling = Spectrum (*)(const std::array<double, 3>&);
 
-bool is_file_name(const std::string& name) {
-    return name.ends_with(".spd") || name.find('/') != std::string::npos;
-}
-
 /// A spectrum from its "wavelength value" pairs.
 Spectrum from_pairs(const Parameter& parameter) {
     const std::vector<double>& numbers = parameter.numbers;
@@ -53,7 +49,7 @@ Spectrum to_spectrum(const Parameter& parameter, RgbUpsampling upsample, const P
         if (parameter.strings.size() != 1 || !parameter.numbers.empty())
             fail("the spectrum \"{}\" takes one name or pairs of numbers", parameter.name);
         const std::string& name = parameter.strings.front();
-        return is_file_name(name) ? Spectrum::read_spd(resolve(name, parameter.where)) : Spectrum::named(name);
+        return is_spectrum_file(name) ? Spectrum::read_spd(resolve(name, parameter.where)) : Spectrum::named(name);
     });
 }
 
@@ -68,6 +64,23 @@ std::optional<double> first_violation(const Spectrum& spectrum, Condition holds)
 }
 
 } // namespace
+
+bool is_spectrum_file(const std::string& name) {
+    return name.ends_with(".spd") || name.find('/') != std::string::npos;
+}
+
+void check_index(const Spectrum& spectrum, const std::string& name, bool may_be_zero, const SourceLocation& where) {
+    const auto [from, to] = spectrum.range_nm();
+    if (from > lambda_min_nm || to < lambda_max_nm)
+        fail_at(where, "the spectrum \"{}\" covers only {} to {} nm, not all of {} to {} nm", name, from, to,
+                lambda_min_nm, lambda_max_nm);
+    const auto allowed = [may_be_zero](double value) {
+        return std::isfinite(value) && (may_be_zero ? value >= 0.0 : value > 0.0);
+    };
+    if (const auto nm = first_violation(spectrum, allowed))
+        fail_at(where, "the spectrum \"{}\" is {} at {} nm, where it must be {}", name, spectrum(*nm), *nm,
+                may_be_zero ? "at least 0 and finite" : "positive and finite");
+}
 
 std::optional<Spectrum> reflectance_parameter(ParameterList& parameters, const std::string& name,
                                               const PathResolver& resolve) {
@@ -88,14 +101,7 @@ std::optional<Spectrum> index_parameter(ParameterList& parameters, const std::st
     if (!parameter)
         return std::nullopt;
     Spectrum spectrum = to_spectrum(*parameter, &Spectrum::rgb_unbounded, resolve);
-    const auto [from, to] = spectrum.range_nm();
-    if (from > lambda_min_nm || to < lambda_max_nm)
-        fail_at(parameter->where, "the spectrum \"{}\" covers only {} to {} nm, not all of {} to {} nm", name, from, to,
-                lambda_min_nm, lambda_max_nm);
-    const auto positive = [may_be_zero](double value) { return may_be_zero ? value >= 0.0 : value > 0.0; };
-    if (const auto nm = first_violation(spectrum, positive))
-        fail_at(parameter->where, "the spectrum \"{}\" is {} at {} nm, where it must be {}", name, spectrum(*nm), *nm,
-                may_be_zero ? "at least 0" : "positive");
+    check_index(spectrum, name, may_be_zero, parameter->where);
     return spectrum;
 }
 
