@@ -44,7 +44,7 @@ kernel void direct(const global SceneLight* light, const global float4* points, 
     it.extent = 8.0f;
     it.material = 0;
     it.light = -1;
-    const DirectLight d = sample_direct(light, &it, it.normal, u[i]);
+    const DirectLight d = sample_direct(light, &it, it.normal, false, u[i]);
     origins[i] = (float4)(d.origin, d.irradiance);
     directions[i] = (float4)(d.direction, d.t_max);
 }

@@ -45,7 +45,9 @@ kernel void dielectric(const global float* pass_table, const global SurfaceMater
     scene.pass_table = pass_table;
     const Interaction it = plane(normal);
     PathWeight weight = new_weight(old_slot);
-    const float3 d = scatter_dielectric(&scene, material, &it, directions[i].xyz, u[i], slot, radiance != 0, &weight);
+    float3 d = directions[i].xyz;
+    float pdf;
+    scatter(&scene, material, &it, &d, u[i], slot, radiance != 0, &weight, &pdf);
     scattered[i] = (float4)(d, 0.0f);
     weights[i] = (float4)(weight.scale, (float)weight.slot, weight.spectrum.block[0].x, weight.spectrum.block[0].y);
 }
@@ -72,7 +74,8 @@ kernel void slab(const global float* pass_table, const global SurfaceMaterial* m
     for (; depth < 100; ++depth) {
         const Interaction it = plane((float3)(0.0f, 0.0f, top ? 1.0f : -1.0f));
         const float u = random4(seed, 0u, i, (uint)depth).x;
-        d = scatter_dielectric(&scene, material, &it, d, u, 0, radiance != 0, &weight);
+        float pdf;
+        scatter(&scene, material, &it, &d, u, 0, radiance != 0, &weight, &pdf);
         if (d.z > 0.0f == top)
             break;
         top = d.z > 0.0f;

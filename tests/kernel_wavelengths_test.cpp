@@ -87,7 +87,8 @@ Spectrum line(double at_nm) {
 TEST(KernelWavelengths, WeightsSumToTheIntegralsAndPaddingWeighsNothing) {
     for (const std::string& name : methods) {
         for (const bool random_sequence : {false, true}) {
-            Passes passes(parse_method(name), random_sequence, {{bumpy(), Use::Reflectance}});
+            Passes passes(parse_method(name), random_sequence,
+                          {{bumpy(), Use::Reflectance}, {bumpy(), Use::Emission}});
             for (const std::uint32_t pass : {0U, 1U, 12345U, 0xffffffffU}) {
                 passes(pass);
                 for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -104,7 +105,10 @@ TEST(KernelWavelengths, WeightsSumToTheIntegralsAndPaddingWeighsNothing) {
                         << name << ", " << channel_names[channel];
                 }
                 for (int slot = passes.w(); slot < passes.padded(); ++slot) {
-                    EXPECT_EQ(passes.spectrum(0, slot), 0.0) << name << ", padding " << slot;
+                    // A refractive index of zero would be divided by.
+                    EXPECT_EQ(passes.lambda(slot), passes.lambda(passes.w() - 1)) << name << ", padding " << slot;
+                    EXPECT_EQ(passes.spectrum(0, slot), passes.spectrum(0, passes.w() - 1)) << name << ", " << slot;
+                    EXPECT_EQ(passes.spectrum(1, slot), 0.0) << name << ", emission in padding " << slot;
                     for (std::size_t channel = 0; channel < 3; ++channel)
                         EXPECT_EQ(passes.weight(channel, slot), 0.0) << name << ", padding " << slot;
                 }

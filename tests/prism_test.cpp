@@ -139,7 +139,8 @@ kernel void follow(SCENE_PARAMETERS, float3 origin, float3 direction, global flo
             break;
         }
         // 1 - 2^-24 reflects only what is reflected totally.
-        direction = scatter_dielectric(&scene, materials + it.material, &it, direction, 0x1.fffffep-1f, slot, false, &weight);
+        float pdf;
+        scatter(&scene, materials + it.material, &it, &direction, 0x1.fffffep-1f, slot, false, &weight, &pdf);
         origin = leave_surface(&it, direction);
         ++refractions;
     }
@@ -148,7 +149,7 @@ kernel void follow(SCENE_PARAMETERS, float3 origin, float3 direction, global flo
 }
 )",
         {{"W", "10"}, {"LANES", "16"}, {"BLOCKS", "1"}, {"HAS_DIELECTRIC", "1"}, {"HAS_DISPERSION", "1"}});
-    const FlatScene flat = flatten_scene(prism_scene(), 1, 1, {0, 0, 1, 1});
+    const FlatScene flat = flatten_scene(prism_scene(), derive_effects(prism_scene()), 1, 1, {0, 0, 1, 1});
     const SceneBuffers buffers(test_device(), flat, 0);
     // Rows of 16: four of wavelengths and weights, then the spectra, of which the materials name the glass's.
     std::vector<float> table(16 * (4 + static_cast<std::size_t>(flat.spectra.rows())), 0.0F);
