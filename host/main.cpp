@@ -1,9 +1,12 @@
 #include "base/error.h"
+#include "commands/bench_film.h"
 #include "commands/bench_pass.h"
 #include "commands/bench_rays.h"
 #include "commands/compare.h"
 #include "commands/devices.h"
+#include "commands/film.h"
 #include "commands/render.h"
+#include "commands/spectra.h"
 #include "opencl/errors.h"
 
 #include <CLI/CLI.hpp>
@@ -25,8 +28,11 @@ int run(int argc, char** argv) {
     tristim::add_render_command(app);
     tristim::add_devices_command(app);
     tristim::add_compare_command(app);
+    tristim::add_film_command(app);
+    tristim::add_spectra_command(app);
     tristim::add_bench_rays_command(app);
     tristim::add_bench_pass_command(app);
+    tristim::add_bench_film_command(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -29,8 +29,9 @@ typedef struct InterfaceOptics {
     Spectrum reflected, transmitted;
 } InterfaceOptics;
 
-// For light that comes from outside, or from inside a dielectric, at an angle of cosine cos_i. Of the blocks of wavelengths only
-// that of `slot` is set, unless slot is SLOT_ALL. thickness is that of the film's first layer.
+// For light that comes from outside, or from inside a dielectric, at an angle of cosine cos_i; a conductor, which has no inside, is
+// the same from both sides. Of the blocks of wavelengths only that of `slot` is set, unless slot is SLOT_ALL. thickness is that of
+// the film's first layer.
 InterfaceOptics interface_optics(const Scene* scene, const global SurfaceMaterial* material, float thickness, bool outside,
                                  float cos_i, int slot) {
     const ThinFilm film = {scene->film_layers + material->film, material->film_layers, thickness};
@@ -40,7 +41,7 @@ InterfaceOptics interface_optics(const Scene* scene, const global SurfaceMateria
     const int first = max(slot, 0) / LANES, last = slot < 0 ? BLOCKS : first + 1;
     InterfaceOptics optics;
     for (int b = first; b < last; ++b) {
-        const FilmOptics o = film_optics(scene->pass_table, b, &film, outside, cos_i, (floatv)(1.0f), vloadv(b, eta),
+        const FilmOptics o = film_optics(scene->pass_table, b, &film, outside || opaque, cos_i, (floatv)(1.0f), vloadv(b, eta),
                                          opaque ? vloadv(b, k) : (floatv)(0.0f));
         optics.reflected.block[b] = 0.5f * (o.reflected_s + o.reflected_p);
         optics.transmitted.block[b] = opaque ? (floatv)(0.0f) : 0.5f * (o.transmitted_s + o.transmitted_p);

@@ -8,7 +8,12 @@
 //     U' = cos δ U - i (sin δ/η) V,    V' = cos δ V - i η sin δ U.
 // Only sin δ/q and q sin δ occur, so nothing is 0/0 at a critical angle, where Airy's closed form of the same product for one
 // layer would be. Signs and scales common to U and V drop out of the ratio that is the reflectance: phases are reduced by half
-// turns, and exp(|Im δ|) is left out, so that thick evanescent or absorbing layers do not overflow.
+// turns, and exp(Im δ) is left out, so that thick evanescent or absorbing layers do not overflow.
+//
+// Above an opaque layer U' and V' must stand in the ratio η of the wave that grows upwards, even where that wave is hardly excited
+// at the bottom (near a guided mode or a surface plasmon). With e = exp(-2 Im δ) and sh = (1 - e)/2, both scaled by exp(-Im δ),
+//     cos δ = e cos(Re δ) + g,    sin δ = e sin(Re δ) + i g,    g = sh exp(-i Re δ),
+// so that the growing parts of U' and V' come from one and the same sum, V + ηU, and its cancellation harms neither's ratio.
 #ifndef TRISTIM_THIN_FILM_H
 #define TRISTIM_THIN_FILM_H
 
@@ -126,11 +131,14 @@ typedef struct Fields {
 } Fields;
 
 #if HAS_ABSORBING_FILM
-// u - i (a v), v - i (b u) with the cosine on both
-Fields through_layer(Fields f, ComplexV cosine, ComplexV sine_over_eta, ComplexV eta_sine) {
-    const ComplexV cu = multiply(cosine, f.u), cv = multiply(cosine, f.v);
-    const ComplexV a = multiply(sine_over_eta, f.v), b = multiply(eta_sine, f.u);
-    const Fields above = {{cu.re + a.im, cu.im - a.re}, {cv.re + b.im, cv.im - b.re}};
+ComplexV add(ComplexV a, ComplexV b) {
+    const ComplexV sum = {a.re + b.re, a.im + b.im};
+    return sum;
+}
+
+// c f - i d x + y
+ComplexV field_above(floatv c, ComplexV f, floatv d, ComplexV x, ComplexV y) {
+    const ComplexV above = {c * f.re + d * x.im + y.re, c * f.im - d * x.re + y.im};
     return above;
 }
 
@@ -150,21 +158,34 @@ void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Double
 
     const floatv phase = half_turns(thickness, wave, q.re, q_low);
     const floatv c = cos_half_turns(phase), d = sin_half_turns(phase);
-    const floatv lost = expm1(-4.0f * PI * thickness * q.im * wave->inverse);  // exp(-2 Im δ) - 1
-    const floatv ch = 1.0f + 0.5f * lost, sh = -0.5f * lost;            // cosh and sinh of Im δ, times exp(-Im δ)
-    *decay *= 1.0f + lost;
-    const ComplexV cosine = {c * ch, -d * sh}, sine = {d * ch, c * sh};
+    const floatv exponent = -4.0f * PI * thickness * q.im * wave->inverse;  // -2 Im δ
+    const floatv e = exp(exponent), sh = -0.5f * expm1(exponent);           // 1 + expm1 would lose e's digits where it is small
+    const floatv ec = e * c, ed = e * d;
+    *decay *= e;
 
-    const ComplexV q_sine = multiply(q, sine);
-    const ComplexV conjugate = {q.re * inverse, -q.im * inverse};
-    const ComplexV sine_over_q = multiply(sine, conjugate);
-    *s = through_layer(*s, cosine, sine_over_q, q_sine);
+    const ComplexV g = {c * sh, -d * sh}, over_q = {q.re * inverse, -q.im * inverse};
     const ComplexV epsilon = {n * n - k * k, q2_im};
     const floatv inverse_epsilon = 1.0f / squared_modulus(epsilon);
     const ComplexV over_epsilon = {epsilon.re * inverse_epsilon, -epsilon.im * inverse_epsilon};
-    *p = through_layer(*p, cosine, multiply(q_sine, over_epsilon), multiply(epsilon, sine_over_q));
+    const ComplexV g_over_q = multiply(g, over_q), g_over_epsilon = multiply(g, over_epsilon);
+
+    const ComplexV q_u = multiply(q, s->u), ws = add(s->v, q_u);
+    const Fields s_above = {field_above(ec, s->u, ed, multiply(over_q, s->v), multiply(g_over_q, ws)),
+                            field_above(ec, s->v, ed, q_u, multiply(g, ws))};
+    const ComplexV q_v = multiply(q, p->v), epsilon_u = multiply(epsilon, p->u), wp = add(q_v, epsilon_u);
+    const Fields p_above = {field_above(ec, p->u, ed, multiply(over_epsilon, q_v), multiply(g_over_epsilon, wp)),
+                            field_above(ec, p->v, ed, multiply(over_q, epsilon_u), multiply(g_over_q, wp))};
+    *s = s_above;
+    *p = p_above;
 }
 #else
+// The first where the sign is negative, else the second.
+Fields choose(floatv sign, Fields first, Fields second) {
+    const Fields chosen = {{sign < 0.0f ? first.u.re : second.u.re, sign < 0.0f ? first.u.im : second.u.im},
+                           {sign < 0.0f ? first.v.re : second.v.re, sign < 0.0f ? first.v.im : second.v.im}};
+    return chosen;
+}
+
 // As above: without absorption cos δ, sin δ/q and q sin δ are real, whether δ is real or imaginary.
 Fields through_layer(Fields f, floatv cosine, floatv sine_over_eta, floatv eta_sine) {
     const Fields above = {{cosine * f.u.re + sine_over_eta * f.v.im, cosine * f.u.im - sine_over_eta * f.v.re},
@@ -182,19 +203,26 @@ void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Double
     const floatv inverse = 1.0f / (q * epsilon);
     const floatv q_low = 0.5f * (fma(-q, q, magnitude) + (q2.high < 0.0f ? -q2.low : q2.low)) * epsilon * inverse;
     const floatv phase = half_turns(thickness, wave, q, q_low);
-    floatv cosine = cos_half_turns(phase), sine = sin_half_turns(phase);
-    floatv q_sine = q * sine;
-    if (any(q2.high < 0.0f)) {
-        // q = iκ: cos δ = cosh, sin δ/q = sinh/κ and q sin δ = -κ sinh of |δ|
-        const floatv lost = expm1(-4.0f * PI * thickness * q * wave->inverse);
-        const floatv sinh_scaled = -0.5f * lost;
-        cosine = q2.high < 0.0f ? 1.0f + 0.5f * lost : cosine;
-        sine = q2.high < 0.0f ? sinh_scaled : sine;
-        q_sine = q2.high < 0.0f ? -q * sinh_scaled : q_sine;
-        *decay *= q2.high < 0.0f ? 1.0f + lost : (floatv)(1.0f);
+    const floatv cosine = cos_half_turns(phase), sine = sin_half_turns(phase);
+    const floatv q_sine = q * sine;
+    Fields s_above = through_layer(*s, cosine, sine * epsilon * inverse, q_sine);
+    Fields p_above = through_layer(*p, cosine, q_sine * q * inverse, epsilon * epsilon * sine * inverse);
+    if (any(q2.high < 0.0f)) {  // q = iκ, and Re δ = 0
+        const floatv exponent = -4.0f * PI * thickness * q * wave->inverse;
+        const floatv e = exp(exponent), sh = -0.5f * expm1(exponent);  // 1 + expm1 would lose e's digits where it is small
+        const floatv sh_over_q = sh * epsilon * inverse, sh_over_epsilon = sh * q * inverse;
+        const ComplexV ws = {s->v.re - q * s->u.im, s->v.im + q * s->u.re};
+        const ComplexV wp = {epsilon * p->u.re - q * p->v.im, epsilon * p->u.im + q * p->v.re};
+        const Fields s_evanescent = {{e * s->u.re + sh_over_q * ws.im, e * s->u.im - sh_over_q * ws.re},
+                                     {e * s->v.re + sh * ws.re, e * s->v.im + sh * ws.im}};
+        const Fields p_evanescent = {{e * p->u.re + sh_over_epsilon * wp.re, e * p->u.im + sh_over_epsilon * wp.im},
+                                     {e * p->v.re + sh_over_q * wp.im, e * p->v.im - sh_over_q * wp.re}};
+        s_above = choose(q2.high, s_evanescent, s_above);
+        p_above = choose(q2.high, p_evanescent, p_above);
+        *decay *= q2.high < 0.0f ? e : (floatv)(1.0f);
     }
-    *s = through_layer(*s, cosine, sine * epsilon * inverse, q_sine);
-    *p = through_layer(*p, cosine, q_sine * q * inverse, epsilon * epsilon * sine * inverse);
+    *s = s_above;
+    *p = p_above;
 }
 #endif
 

@@ -1,5 +1,6 @@
-# Writes OUTPUT, a C++ file that holds every kernel source and every spectral table as text.
-file(GLOB FILES RELATIVE ${ROOT} ${ROOT}/kernels/*.cl ${ROOT}/kernels/*.h ${ROOT}/host/spectra/data/*.spd)
+# Writes OUTPUT, a C++ file that holds every kernel source, every spectral table and the plotting script as text.
+file(GLOB FILES RELATIVE ${ROOT} ${ROOT}/kernels/*.cl ${ROOT}/kernels/*.h ${ROOT}/host/spectra/data/*.spd
+     ${ROOT}/host/plot/*.py)
 list(SORT FILES)
 set(TEXT "#include \"base/embedded_files.h\"\n\nnamespace tristim {\n\n")
 string(APPEND TEXT "const std::map<std::string, std::string_view>& embedded_files() {\n")
