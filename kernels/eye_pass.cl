@@ -90,7 +90,8 @@ void make_visible_point(const Interaction* it, float3 n, int slot, EyeEnd* end) 
 bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, float u_lobe, float u_light,
                   float2 u_point, EyePath* path, EyeEnd* end) {
     float cosine;
-    const float3 n = facing_normal(it, -path->direction, &cosine).normal;
+    const Facing facing = facing_normal(it, -path->direction, &cosine);
+    const float3 n = facing.normal;
 #if HAS_COATED_DIFFUSE
     if (material->film_layers > 0) {
         const InterfaceOptics optics = interface_optics(scene, material, film_thickness(scene, material, it), true, cosine,
@@ -98,7 +99,7 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
         const float probability = reflection_probability(&path->weight, &optics);
         if (u_lobe < probability) {
             multiply_weight(&path->weight, &optics.reflected, 1.0f / probability);
-            path->direction = reflect(path->direction, n, cosine);
+            path->direction = mirror(it, facing, cosine, path->direction);
             path->pdf = 0.0f;
             return true;
         }

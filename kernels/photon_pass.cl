@@ -19,20 +19,21 @@ typedef struct PhotonStore {
     uint next, end;
 } PhotonStore;
 
-// Stores a photon that arrived along `direction`; flux is what a visible point is to add up: see the structs. Past the end it only
-// counts; the host then makes room and repeats the pass.
+// Stores a photon that arrived along `direction`; flux times `factor` is what a visible point is to add up: see the structs. Past
+// the end it only counts; the host then makes room and repeats the pass.
 void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it, float3 n, float3 direction, bool diffuse,
-                  const PathWeight* flux) {
+                  const PathWeight* flux, float factor) {
     const uint index = store->next++;
     if (index >= store->end)
         return;
+    const float scale = flux->scale * factor;
     float3 xyz;
     if (flux->slot >= 0) {
-        xyz = flux->scale * slot_weight(scene->pass_table, flux->slot);
+        xyz = scale * slot_weight(scene->pass_table, flux->slot);
     } else {
         Spectrum scaled;
         for (int b = 0; b < BLOCKS; ++b) {
-            scaled.block[b] = flux->scale * flux->spectrum.block[b];
+            scaled.block[b] = scale * flux->spectrum.block[b];
 #if STORE_SPECTRAL_FLUX
             vstorev(scaled.block[b], b, store->spectra + (size_t)index * W_PADDED);
 #endif
@@ -73,15 +74,23 @@ PathWeight reflected_diffusely(const Scene* scene, const global SurfaceMaterial*
 typedef struct PhotonPath {
     float3 origin, direction;
     PathWeight weight;
-    bool bounced;  // off a diffuse surface
+    uint4 key;            // of its random numbers
+    float2 first_bounce;  // its low-discrepancy numbers for the first direction that is drawn
+    bool bounced;         // that one has been drawn
 } PhotonPath;
+
+float2 direction_numbers(const PhotonPath* path, uint depth) {
+    return path->bounced ? (float2)(random_step(path->key.y, depth), random_step(path->key.z, depth)) : path->first_bounce;
+}
 
 // At a diffuse surface: stores a photon if it is to, and ends the path by Russian roulette in proportion to what is reflected, so
 // that the path's flux summed over its wavelengths stays the same. Returns whether the path goes on.
-bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, bool store_it, float u_lobe,
-                  float2 u_direction, PhotonPath* path, PhotonStore* store) {
+bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, bool store_it, uint depth,
+                  PhotonPath* path, PhotonStore* store) {
+    const float u = random_step(path->key.x, depth);
     float cosine;
-    const float3 n = facing_normal(it, -path->direction, &cosine).normal;
+    const Facing facing = facing_normal(it, -path->direction, &cosine);
+    const float3 n = facing.normal;
     const float before = carried_total(&path->weight);
     float mirrored = 0.0f;  // share of the flux that a film reflects
     float thickness = 0.0f;
@@ -96,34 +105,33 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
     }
 #endif
     PathWeight reflected = reflected_diffusely(scene, material, thickness, coat, &path->weight);
-    if (store_it) {
-        PathWeight flux = reflected;
-        flux.scale *= INV_PI;
-        store_photon(scene, store, it, n, path->direction, true, &flux);
-    }
+    if (store_it)
+        store_photon(scene, store, it, n, path->direction, true, &reflected, INV_PI);
 #if HAS_COATED_DIFFUSE
-    if (u_lobe < mirrored) {
+    if (u < mirrored) {
         multiply_weight(&path->weight, &optics.reflected, 1.0f / mirrored);
-        path->direction = reflect(path->direction, n, cosine);
+        path->direction = mirror(it, facing, cosine, path->direction);
         return true;
-    }
-#endif
-    const Frame frame = make_frame(n);
-    const float3 sampled = sample_cosine_hemisphere(u_direction);
-    path->direction = frame_to_world(&frame, sampled);
-#if HAS_COATED_DIFFUSE
-    if (material->film_layers > 0) {
-        const Spectrum out = coat_transmittance(scene, material, thickness, sampled.z, reflected.slot);
-        multiply_weight(&reflected, &out, 1.0f);
     }
 #endif
     // With a film this may exceed what is left beside `mirrored`; the weight then makes up for it.
     const float after = carried_total(&reflected) / before * (reflected.scale / path->weight.scale);
     const float survival = min(after, 1.0f - mirrored);
+    if (!(u < mirrored + survival))
+        return false;
+    const Frame frame = make_frame(n);
+    const float3 sampled = sample_cosine_hemisphere(direction_numbers(path, depth));
+    path->bounced = true;
+    path->direction = frame_to_world(&frame, sampled);
     path->weight = reflected;
     path->weight.scale /= survival;
-    path->bounced = true;
-    return u_lobe < mirrored + survival;
+#if HAS_COATED_DIFFUSE
+    if (material->film_layers > 0) {
+        const Spectrum out = coat_transmittance(scene, material, thickness, sampled.z, path->weight.slot);
+        multiply_weight(&path->weight, &out, 1.0f);
+    }
+#endif
+    return true;
 }
 
 // u is the path's point of the low-discrepancy sequence.
@@ -136,6 +144,8 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
     PhotonPath path;
     path.origin = emission.origin;
     path.direction = emission.direction;
+    path.key = pcg4d((uint4)(path_number, STREAM_PHOTON, pass, seed));
+    path.first_bounce = u.PHOTON_FIRST_BOUNCE;
     path.bounced = false;
     path.weight.scale = emission.power;
     path.weight.slot = SLOT_ALL;
@@ -144,7 +154,6 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
     if (carried_total(&path.weight) <= 0.0f)
         return;  // all of the pass's wavelengths lie between the light's lines
 
-    const uint4 key = pcg4d((uint4)(path_number, STREAM_PHOTON, pass, seed));
     for (int depth = 0; depth < MAX_DEPTH; ++depth) {
         const Hit hit = closest_hit(scene, path.origin, path.direction);
         if (hit.triangle < 0)
@@ -152,21 +161,22 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
         const Interaction it = make_interaction(scene, &hit);
         const global SurfaceMaterial* material = scene->materials + it.material;
         const bool store_it = depth > 0 || DIRECT_PHOTONS;
-        const float u_lobe = random_step(key.x, (uint)depth);
-        const float2 u_direction = path.bounced ? (float2)(random_step(key.y, (uint)depth), random_step(key.z, (uint)depth))
-                                                : u.PHOTON_FIRST_BOUNCE;
         if (material->kind == MATERIAL_DIFFUSE) {
-            if (!meet_diffuse(scene, material, &it, store_it, u_lobe, u_direction, &path, store))
+            if (!meet_diffuse(scene, material, &it, store_it, (uint)depth, &path, store))
                 return;
         } else {
 #if HAS_ROUGH_PHOTONS
             if (store_it && material->takes_photons) {
                 float cosine;
                 const float3 n = facing_normal(&it, -path.direction, &cosine).normal;
-                store_photon(scene, store, &it, n, path.direction, false, &path.weight);
+                store_photon(scene, store, &it, n, path.direction, false, &path.weight, 1.0f);
             }
 #endif
-            const float3 v = (float3)(u_lobe, u_direction);
+            float3 v;
+            v.x = random_step(path.key.x, (uint)depth);
+#if HAS_ROUGH
+            v.yz = direction_numbers(&path, (uint)depth);
+#endif
             float pdf;
             if (!scatter(scene, material, &it, &path.direction, v, slot, false, &path.weight, &pdf))
                 return;

@@ -42,6 +42,17 @@ float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* mate
 }
 #endif
 
+// Mirrors a direction at a smooth surface, which it meets at `cosine`. A shading normal that would send it through the surface gives
+// way to the geometric one.
+float3 mirror(const Interaction* it, Facing facing, float cosine, float3 direction) {
+    const float3 mirrored = reflect(direction, facing.normal, cosine);
+#if HAS_SHADING_NORMALS
+    if ((dot(mirrored, it->normal) >= 0.0f) != facing.outside)
+        return reflect(direction, it->normal, -dot(direction, it->normal));
+#endif
+    return mirrored;
+}
+
 #if HAS_CONDUCTOR
 // Reflects at a smooth conductor; the Fresnel reflectance multiplies the weight. Returns the new direction.
 float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
@@ -56,12 +67,7 @@ float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* mater
         for (int b = 0; b < BLOCKS; ++b)
             weight->spectrum.block[b] *= fresnel_conductor_lanes(cos_i, vloadv(b, eta), vloadv(b, k));
     }
-    const float3 scattered = reflect(direction, facing.normal, cos_i);
-#if HAS_SHADING_NORMALS
-    if ((dot(scattered, it->normal) >= 0.0f) != facing.outside)
-        return reflect(direction, it->normal, -dot(direction, it->normal));
-#endif
-    return scattered;
+    return mirror(it, facing, cos_i, direction);
 }
 #endif
 

@@ -281,6 +281,8 @@ void check_rough(const InterfaceProgram& program, const RoughCase& test) {
     for (std::size_t bin = 0; bin < 2 * bins * bins; ++bin)
         expected.back() -= expected[bin];
     expected.back() = std::max(expected.back() + 1.0, 0.0);
+    // The quadrature may miss the corner of a bin that is all but cut off by the horizon.
+    const auto counted_bin = [&](std::size_t bin) { return expected[bin] * count < 1.0 ? expected.size() - 1 : bin; };
 
     std::vector<cl_float4> u = random_hypercubes(count, 71);
     const std::vector<ScatteredPath> paths = program.scatter(surface, std::vector<cl_float4>(count, direction), u, normal,
@@ -302,8 +304,8 @@ void check_rough(const InterfaceProgram& program, const RoughCase& test) {
         }
         const Vec3 m = up ? Ggx::reflecting(wo, wi) : Ggx::refracting(wo, wi, eta);
         const auto [x, y] = lune.square(m);
-        histogram.add((up ? 0 : bins * bins) + Histogram::bin(std::clamp(x, 0.0, 1.0), bins) * bins +
-                      Histogram::bin(std::clamp(y, 0.0, 1.0), bins));
+        histogram.add(counted_bin((up ? 0 : bins * bins) + Histogram::bin(std::clamp(x, 0.0, 1.0), bins) * bins +
+                                  Histogram::bin(std::clamp(y, 0.0, 1.0), bins)));
         if (i >= 200)
             continue;
         const double before = test.slot < 0 ? first_weights[i % test_wavelengths] : 1.0;
@@ -390,9 +392,11 @@ TEST(KernelInterface, RoughFilmsAreReciprocal) {
                 const Scattering f = scattering(surface, outside, a, b, slot);
                 double tolerance = 2e-5 * f.value + film_error * f.geometry;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    Vec3 moved = b;
-                    moved[axis] += direction_error;
-                    tolerance += std::abs(scattering(surface, outside, a, moved, slot).value - f.value);
+                    Vec3 a_moved = a, b_moved = b;
+                    a_moved[axis] += direction_error;
+                    b_moved[axis] += direction_error;
+                    tolerance += std::abs(scattering(surface, outside, a, b_moved, slot).value - f.value) +
+                                 std::abs(scattering(surface, outside, a_moved, b, slot).value - f.value);
                 }
                 scattered += f.value > 0.0 ? 1 : 0;
                 const std::string where = fmt::format("{}, {}, pair {}", surface.name, outside ? "outside" : "inside", i);

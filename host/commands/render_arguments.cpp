@@ -51,6 +51,11 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
                     "First search radius in scene units, or auto [scene, else auto]")
         ->type_name("R|auto");
     command.add_option("--max-depth", a.max_depth, "Vertices after which a path ends [scene, else 16]");
+    command
+        .add_option("--photon-roughness", a.photon_roughness,
+                    "GGX roughness (alpha) from which on surfaces take photons; camera paths go on at smoother ones")
+        ->type_name("ALPHA")
+        ->capture_default_str();
     command.add_option("--math", a.math, "Kernel arithmetic: precise, or fast (relaxed math)")
         ->check(CLI::IsMember({"precise", "fast"}))
         ->capture_default_str();
@@ -80,6 +85,7 @@ RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
         options.radius = parse_initial_radius(a.initial_radius);
     options.direct_photons = a.direct == "photons";
     options.statistics_radius = a.radius == "statistics";
+    options.photon_roughness = a.photon_roughness;
     options.fast_math = a.math == "fast";
     options.dump_kernels = a.dump_kernels;
     check_options(options);

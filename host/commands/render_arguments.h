@@ -19,6 +19,7 @@ struct RenderArguments {
     std::string direct = "sample";
     std::string radius = "global";
     std::string initial_radius;
+    double photon_roughness = default_photon_roughness;
     std::string math = "precise";
     std::string device;
     std::string dump_kernels;

@@ -20,14 +20,14 @@ void add_film(const Scene& scene, const Material& material, Effects& effects) {
 
 void add_roughness(const Material& material, Effects& effects) {
     effects.rough = true;
-    (takes_photons(material) ? effects.rough_photons : effects.nearly_specular) = true;
+    (takes_photons(material, effects.photon_roughness) ? effects.rough_photons : effects.nearly_specular) = true;
     if (material.alpha_u != material.alpha_v)
         effects.anisotropic = effects.uv = true;
 }
 
 } // namespace
 
-bool takes_photons(const Material& material) {
+bool takes_photons(const Material& material, double photon_roughness) {
     return std::max(material.alpha_u, material.alpha_v) >= photon_roughness;
 }
 
@@ -39,8 +39,9 @@ bool stores_spectral_flux(const Effects& effects) {
     return effects.dispersion || has_coloured_eye(effects);
 }
 
-Effects derive_effects(const Scene& scene) {
+Effects derive_effects(const Scene& scene, double photon_roughness) {
     Effects effects;
+    effects.photon_roughness = photon_roughness;
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[static_cast<std::size_t>(shape.material)];
         if (material.kind == Material::Kind::Dielectric) {

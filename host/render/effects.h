@@ -5,6 +5,10 @@
 
 namespace tristim {
 
+/// The GGX roughness α from which on a surface takes photons and ends camera paths, as a diffuse one does, unless the
+/// user says otherwise; smoother surfaces pass camera paths on. bench/roughness measures where the border lies.
+constexpr double default_photon_roughness = 0.1;
+
 /// What a scene calls for. Kernels are built with these and hold nothing else.
 struct Effects {
     bool dielectric = false;
@@ -14,6 +18,7 @@ struct Effects {
     bool absorbing_film = false; ///< a film with a layer that absorbs
     bool coated_diffuse = false; ///< a film on a diffuse surface
     bool rough = false;
+    double photon_roughness = default_photon_roughness;
     bool rough_photons = false;   ///< a surface that is rough enough to take photons
     bool nearly_specular = false; ///< a rough surface that is not
     bool anisotropic = false;
@@ -28,11 +33,8 @@ struct Effects {
     bool area_light = false;
 };
 
-/// The GGX roughness α (the larger of the two) from which on a surface takes photons and ends camera paths, as a
-/// diffuse one does; smoother surfaces pass camera paths on.
-constexpr double photon_roughness = 0.1;
-
-bool takes_photons(const Material& material);
+/// Whether the larger of the surface's α reaches the border.
+bool takes_photons(const Material& material, double photon_roughness);
 
 /// Whether camera paths may carry a throughput of its own for every wavelength: COLOURED_EYE of kernels/config.h.
 bool has_coloured_eye(const Effects& effects);
@@ -41,7 +43,7 @@ bool has_coloured_eye(const Effects& effects);
 bool stores_spectral_flux(const Effects& effects);
 
 /// Only materials and lights in use count.
-Effects derive_effects(const Scene& scene);
+Effects derive_effects(const Scene& scene, double photon_roughness = default_photon_roughness);
 
 /// The HAS_… macros of kernels/config.h.
 Macros effect_macros(const Effects& effects);

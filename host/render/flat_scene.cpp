@@ -63,7 +63,7 @@ void add_film(const Film& film, FlatScene& flat, SurfaceMaterial& m) {
     }
 }
 
-void add_materials(const Scene& scene, FlatScene& flat) {
+void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) {
     using Use = SpectrumTable::Use;
     for (const Material& material : scene.materials) {
         SurfaceMaterial m{};
@@ -89,7 +89,7 @@ void add_materials(const Scene& scene, FlatScene& flat) {
         }
         m.alpha_u = static_cast<float>(material.alpha_u);
         m.alpha_v = static_cast<float>(material.alpha_v);
-        m.takes_photons = takes_photons(material) ? 1 : 0;
+        m.takes_photons = takes_photons(material, effects.photon_roughness) ? 1 : 0;
         add_film(material.film, flat, m);
         flat.materials.push_back(m);
     }
@@ -262,7 +262,7 @@ void weigh_lights(const Scene& scene, const std::vector<double>& luminances, Fla
 
 FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, int height, const Region& region) {
     FlatScene flat;
-    add_materials(scene, flat);
+    add_materials(scene, effects, flat);
 
     std::vector<int> rows;
     std::vector<double> luminances(static_cast<std::size_t>(flat.spectra.rows()), 0.0);

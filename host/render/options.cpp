@@ -33,6 +33,8 @@ void check_options(const RenderOptions& options) {
         fail("maximum depth {} is not between 1 and {}", options.max_depth, deepest);
     if (options.radius && !(*options.radius > 0.0))
         fail("search radius {} is not positive", *options.radius);
+    if (!(options.photon_roughness >= 0.0))
+        fail("photon roughness {} is not a number from 0 on", options.photon_roughness);
 }
 
 } // namespace tristim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/effects.h"
 #include "render/flat_scene.h"
 #include "render/method.h"
 #include "scene/scene.h"
@@ -23,6 +24,7 @@ struct RenderOptions {
     std::uint32_t seed = 0;
     bool direct_photons = false;    ///< photons count from their first hit, direct light is not sampled
     bool statistics_radius = false; ///< Hachisuka et al. 2008's statistics of each pixel
+    double photon_roughness = default_photon_roughness; ///< α from which on rough surfaces take photons
     bool fast_math = false;
     std::string dump_kernels; ///< folder for the programs as built, or empty
     bool record_rays = false; ///< keep every ray of the last pass, for bench-pass

@@ -51,7 +51,7 @@ std::size_t rays_to_record(const RenderOptions& options) {
 } // namespace
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Device& device)
-    : device_(device), options_(options), effects_(derive_effects(scene)), layout_(wavelength_layout(options.method)) {
+    : device_(device), options_(options), effects_(derive_effects(scene, options.photon_roughness)), layout_(wavelength_layout(options.method)) {
     check_options(options);
     const FlatScene flat = flatten_scene(scene, effects_, options.width, options.height, options.region);
     scene_buffers_ = SceneBuffers(device, flat, rays_to_record(options));
