@@ -3,6 +3,7 @@
 #define TRISTIM_SPECTRUM_H
 
 #include "config.h"
+#include "shared_types.h"
 
 #define CONCATENATE_(a, b) a##b
 #define CONCATENATE(a, b) CONCATENATE_(a, b)
@@ -29,12 +30,6 @@ float lanes_sum(floatv v) {
     return (b.x + b.y) + (b.z + b.w);
 }
 #endif
-
-// The pass's wavelengths and every spectrum of the scene at them, filled by wavelengths.cl: rows of W_PADDED floats.
-//   row 0         λ in nm
-//   rows 1 to 3   weights c_w of X, Y and Z: XYZ = Σ_w c_w L(λ_w); zero in the padding
-//   row 4 + s     spectrum s of the scene
-#define PASS_TABLE_SPECTRA 4
 
 const global float* spectrum_row(const global float* pass_table, int spectrum) {
     return pass_table + (PASS_TABLE_SPECTRA + spectrum) * W_PADDED;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -25,7 +26,7 @@ Render render(const std::string& before, const std::string& scene, const std::st
               const std::string& name) {
     const std::string base = testing::TempDir() + "tristim-backend-" + name;
     const std::string command =
-        fmt::format("{} '{}' render '{}/meshes/{}/scene.pbrt' --quiet --outfile '{}.exr' {} > '{}.log' 2>&1", before,
+        fmt::format("{} '{}' render '{}/meshes/{}.pbrt' --quiet --outfile '{}.exr' {} > '{}.log' 2>&1", before,
                     TRISTIM_COMMAND, TRISTIM_SOURCE_DIR, scene, base, options, base);
     const int status = std::system(command.c_str());
     std::ostringstream messages;
@@ -41,9 +42,16 @@ void expect_same_image(const Render& one, const Render& other) {
 }
 
 struct Case {
-    const char* scene;
+    const char* scene; ///< in meshes/, without .pbrt
     const char* method;
 };
+
+/// The part of a scene's name before the '/', for files and names of tests.
+std::string folder(const std::string& scene) {
+    std::string name = scene.substr(0, scene.find('/'));
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
 
 class Oclgrind : public testing::TestWithParam<Case> {};
 
@@ -51,7 +59,7 @@ TEST_P(Oclgrind, ReportsNothing) {
     const auto [scene, method] = GetParam();
     const std::string options =
         fmt::format("--method {} --resolution 12x12 --photons 256 --passes 2 --initial-radius 0.2", method);
-    const std::string name = fmt::format("{}-{}", scene, std::string(method).substr(0, 3));
+    const std::string name = fmt::format("{}-{}", folder(scene), std::string(method).substr(0, 3));
     const Render simulated = render("oclgrind --data-races --check-api", scene, options, name + "-oclgrind");
     ASSERT_EQ(simulated.status, 0) << simulated.messages;
     EXPECT_EQ(simulated.messages, ""); // Oclgrind prints what it finds
@@ -61,18 +69,28 @@ TEST_P(Oclgrind, ReportsNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Oclgrind,
-                         testing::Values(Case{"dispersion", "tristimulus:1"}, Case{"dispersion", "spectral:400"},
-                                         Case{"box", "rgb"}, Case{"prism", "tristimulus:4"}),
-                         [](const auto& test) { return fmt::format("{}_{}", test.param.scene, test.index); });
+                         testing::Values(Case{"dispersion/scene", "tristimulus:1"},
+                                         Case{"dispersion/scene", "spectral:400"}, Case{"box/scene", "rgb"},
+                                         Case{"prism/scene", "tristimulus:4"}, Case{"interference/scene", "rgb"},
+                                         Case{"interference-areas/c", "tristimulus:1"},
+                                         Case{"anodised-titanium/scene", "tristimulus:1"}),
+                         [](const auto& test) { return fmt::format("{}_{}", folder(test.param.scene), test.index); });
 
-TEST(Rusticl, RendersTheSameImage) {
+class Rusticl : public testing::TestWithParam<const char*> {};
+
+TEST_P(Rusticl, RendersTheSameImage) {
     const std::string options = "--resolution 32x32 --photons 1024 --passes 2";
-    const Render rusticl = render("RUSTICL_ENABLE=llvmpipe", "dispersion", options + " --device rusticl", "rusticl");
+    const std::string name = "rusticl-" + folder(GetParam());
+    const Render rusticl = render("RUSTICL_ENABLE=llvmpipe", GetParam(), options + " --device rusticl", name);
     ASSERT_EQ(rusticl.status, 0) << rusticl.messages;
-    const Render native = render("", "dispersion", options + " --device 'Portable Computing Language'", "rusticl-pocl");
+    const Render native = render("", GetParam(), options + " --device 'Portable Computing Language'", name + "-pocl");
     ASSERT_EQ(native.status, 0) << native.messages;
     expect_same_image(rusticl, native);
 }
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Rusticl,
+                         testing::Values("dispersion/scene", "interference-areas/c", "anodised-titanium/scene"),
+                         [](const auto& test) { return folder(test.param); });
 
 } // namespace
 } // namespace tristim

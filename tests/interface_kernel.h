@@ -50,8 +50,8 @@ struct CoatedSurface {
     }
 };
 
-/// Rows of the pass table, where SceneFilmLayer and SurfaceMaterial of a CoatedSurface point: eta, k, two spare rows, and eta and k
-/// of each layer.
+/// Rows of the pass table, where SceneFilmLayer and SurfaceMaterial of a CoatedSurface point: eta, k, two spare rows,
+/// and eta and k of each layer.
 constexpr int eta_row = 0, k_row = 1, reflectance_row = 2, internal_row = 3, first_layer_row = 4;
 
 inline std::vector<float> pass_table_of(const CoatedSurface& surface, const PerWavelength& reflectance = {}) {
@@ -100,9 +100,18 @@ inline std::vector<SceneFilmLayer> layers_of(const CoatedSurface& surface) {
 }
 
 inline Macros interface_macros() {
-    return {{"W", "6"},          {"LANES", "4"},         {"BLOCKS", "2"},         {"HAS_DIELECTRIC", "1"},
-            {"HAS_CONDUCTOR", "1"}, {"HAS_DISPERSION", "1"}, {"HAS_FILM", "1"},       {"HAS_ABSORBING_FILM", "1"},
-            {"HAS_ROUGH", "1"},  {"HAS_ANISOTROPIC", "1"}, {"HAS_UV", "1"}, {"HAS_COATED_DIFFUSE", "1"}};
+    return {{"W", "6"},
+            {"LANES", "4"},
+            {"BLOCKS", "2"},
+            {"HAS_DIELECTRIC", "1"},
+            {"HAS_CONDUCTOR", "1"},
+            {"HAS_DISPERSION", "1"},
+            {"HAS_FILM", "1"},
+            {"HAS_ABSORBING_FILM", "1"},
+            {"HAS_ROUGH", "1"},
+            {"HAS_ANISOTROPIC", "1"},
+            {"HAS_UV", "1"},
+            {"HAS_COATED_DIFFUSE", "1"}};
 }
 
 /// A path after scattering.
@@ -124,14 +133,14 @@ struct ScatteredPath {
 class InterfaceProgram {
   public:
     std::vector<ScatteredPath> scatter(const CoatedSurface& surface, const std::vector<cl_float4>& directions,
-                                       const std::vector<cl_float4>& u, const Vec3& normal, const Vec3& tangent, int old_slot,
-                                       int slot, bool radiance) const {
+                                       const std::vector<cl_float4>& u, const Vec3& normal, const Vec3& tangent,
+                                       int old_slot, int slot, bool radiance) const {
         const std::size_t count = directions.size();
         const Buffer<cl_float4> scattered = make_buffer<cl_float4>(count);
         const Buffer<float> weights = make_buffer<float>(count * (3 + padded_wavelengths));
         run(program_, "scatter_paths", count, upload(pass_table_of(surface)), upload(std::vector{material_of(surface)}),
-            upload(layers(surface)), upload(directions), upload(u), float3_of(normal), float3_of(tangent), old_slot, slot,
-            radiance ? 1 : 0, scattered, weights);
+            upload(layers(surface)), upload(directions), upload(u), float3_of(normal), float3_of(tangent), old_slot,
+            slot, radiance ? 1 : 0, scattered, weights);
         const std::vector<cl_float4> d = scattered.read(test_device());
         const std::vector<float> values = weights.read(test_device());
         std::vector<ScatteredPath> paths;
@@ -144,15 +153,15 @@ class InterfaceProgram {
         return paths;
     }
 
-    /// The BSDF that scatters flux, at the wavelength of `slot`; directions are in the surface's frame on wo's side. evaluated is what
-    /// the path keeps, SLOT_ALL or `slot`.
+    /// The BSDF that scatters flux, at the wavelength of `slot`; directions are in the surface's frame on wo's side.
+    /// evaluated is what the path keeps, SLOT_ALL or `slot`.
     std::vector<double> evaluate(const CoatedSurface& surface, const std::vector<cl_float4>& wo,
                                  const std::vector<cl_float4>& wi, bool reflection_outside, bool transmission_outside,
                                  int slot) const {
         const Buffer<float> values = make_buffer<float>(wo.size());
         run(program_, "evaluate", wo.size(), upload(pass_table_of(surface)), upload(std::vector{material_of(surface)}),
-            upload(layers(surface)), upload(wo), upload(wi), reflection_outside ? 1 : 0, transmission_outside ? 1 : 0, slot,
-            values);
+            upload(layers(surface)), upload(wo), upload(wi), reflection_outside ? 1 : 0, transmission_outside ? 1 : 0,
+            slot, values);
         const std::vector<float> read = values.read(test_device());
         return {read.begin(), read.end()};
     }

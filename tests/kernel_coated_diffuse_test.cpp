@@ -17,8 +17,8 @@ using std::numbers::pi;
 
 constexpr double film_error = 5e-6; ///< as in kernel_interface_test.cpp
 
-/// ∫ f(x) dx over [0, 1] by 2 × 64 nodes, whose pieces x = a s², 1 - b s² lie dense at both ends, where a film's values have
-/// infinite slopes.
+/// ∫ f(x) dx over [0, 1] by 2 × 64 nodes, whose pieces x = a s², 1 - b s² lie dense at both ends, where a film's values
+/// have infinite slopes.
 double dense_integral(const std::function<double(double)>& f) {
     static const std::vector<Node> rule = gauss_legendre(64);
     double sum = 0.0;
@@ -49,11 +49,17 @@ std::vector<CoatedSurface> coated_surfaces() {
             for (const PerWavelength& k : {none, some}) {
                 surfaces.push_back({fmt::format("{} nm on {}{}", thickness, base[0] == 1.0F ? "1 … 2.4" : "1.5",
                                                 k[0] > 0.0F ? ", absorbing" : ""),
-                                    MATERIAL_DIFFUSE, false, base, {}, {{thickness, film, k}}, {}});
+                                    MATERIAL_DIFFUSE,
+                                    false,
+                                    base,
+                                    {},
+                                    {{thickness, film, k}},
+                                    {}});
             }
         }
     }
-    surfaces.push_back({"two layers on 1.5", MATERIAL_DIFFUSE, false, glass, {}, {{150.0, film, none}, {80.0, low, none}}, {}});
+    surfaces.push_back(
+        {"two layers on 1.5", MATERIAL_DIFFUSE, false, glass, {}, {{150.0, film, none}, {80.0, low, none}}, {}});
     return surfaces;
 }
 
@@ -61,8 +67,8 @@ bool absorbs(const CoatedSurface& surface) {
     return surface.layers[0].k[0] > 0.0F;
 }
 
-/// Of internal_reflectance. Its 48 points, evaluated in double, are off by 2e-7, but by 7e-5 for 2 µm that absorb weakly: light that
-/// such a film guides is lost at angles that are narrower than the rule's steps.
+/// Of internal_reflectance. Its 48 points, evaluated in double, are off by 2e-7, but by 7e-5 for 2 µm that absorb
+/// weakly: light that such a film guides is lost at angles that are narrower than the rule's steps.
 double internal_error(const CoatedSurface& surface) {
     return (absorbs(surface) && surface.layers[0].thickness > 1000.0 ? 8e-5 : 2e-6) + film_error;
 }
@@ -94,8 +100,8 @@ std::vector<float> filled_table(const CoatedSurface& surface, const PerWavelengt
     for (auto& [name, value] : macros)
         value = name == "HAS_ABSORBING_FILM" && !absorbing ? "0" : value;
     Buffer<float> table = upload(pass_table_of(surface, reflectance));
-    run(build_test_program("#include \"film_tables.cl\"\n", macros), "film_tables", 2, upload(std::vector{material_of(surface)}),
-        upload(layers_of(surface)), table);
+    run(build_test_program("#include \"film_tables.cl\"\n", macros), "film_tables", 2,
+        upload(std::vector{material_of(surface)}), upload(layers_of(surface)), table);
     return table.read(test_device());
 }
 
@@ -103,14 +109,15 @@ TEST(KernelCoatedDiffuse, InternalReflectanceIsTheQuadratures) {
     for (const CoatedSurface& surface : coated_surfaces()) {
         const std::vector<float> table = filled_table(surface, {}, absorbs(surface));
         for (std::size_t w = 0; w < test_wavelengths; ++w) {
-            EXPECT_NEAR(table[(4 + internal_row) * padded_wavelengths + w], internal_reflectance(surface, w), internal_error(surface))
+            EXPECT_NEAR(table[(4 + internal_row) * padded_wavelengths + w], internal_reflectance(surface, w),
+                        internal_error(surface))
                 << surface.name << ", wavelength " << w;
         }
     }
 }
 
-/// Everything that falls on a film comes back: from its face R(θ), through it T(θ) ρ/(n² (1 - ρF)) ∫T 2μ dμ; with ρ = 1 and no
-/// absorption all of it.
+/// Everything that falls on a film comes back: from its face R(θ), through it T(θ) ρ/(n² (1 - ρF)) ∫T 2μ dμ; with ρ = 1
+/// and no absorption all of it.
 TEST(KernelCoatedDiffuse, AlbedoIsTheClosedFormAndAWhiteBodyLosesNothing) {
     const ::cl::Program program = build_test_program(source, interface_macros());
     const std::vector<Node> rule = gauss_legendre(64);
@@ -120,14 +127,15 @@ TEST(KernelCoatedDiffuse, AlbedoIsTheClosedFormAndAWhiteBodyLosesNothing) {
         cosines.push_back(static_cast<float>(1.0 - 0.5 * node.x * node.x));
     }
     for (const CoatedSurface& surface : coated_surfaces()) {
-        for (const PerWavelength& rho : {PerWavelength{1.0F, 1.0F, 1.0F, 1.0F, 1.0F, 1.0F},
-                                         PerWavelength{0.9F, 0.5F, 0.1F, 0.0F, 0.99F, 0.7F}}) {
+        for (const PerWavelength& rho :
+             {PerWavelength{1.0F, 1.0F, 1.0F, 1.0F, 1.0F, 1.0F}, PerWavelength{0.9F, 0.5F, 0.1F, 0.0F, 0.99F, 0.7F}}) {
             const std::size_t count = cosines.size();
             const Buffer<float> reflected = make_buffer<float>(count * padded_wavelengths),
                                 transmitted = make_buffer<float>(count * padded_wavelengths),
                                 body = make_buffer<float>(count * padded_wavelengths);
-            run(program, "coat", count, upload(filled_table(surface, rho, true)), upload(std::vector{material_of(surface)}),
-                upload(layers_of(surface)), upload(cosines), reflected, transmitted, body);
+            run(program, "coat", count, upload(filled_table(surface, rho, true)),
+                upload(std::vector{material_of(surface)}), upload(layers_of(surface)), upload(cosines), reflected,
+                transmitted, body);
             const std::vector<float> r = reflected.read(test_device()), t = transmitted.read(test_device()),
                                      b = body.read(test_device());
             for (std::size_t w = 0; w < test_wavelengths; ++w) {
@@ -247,7 +255,8 @@ TEST(KernelCoatedDiffuse, CameraAndPhotonPathsMeetTheSameSurface) {
     constexpr std::size_t count = 1 << 15;
     Macros direct = interface_macros(); // no light to sample
     direct.emplace_back("DIRECT_PHOTONS", "1");
-    const ::cl::Program eye = build_test_program(eye_source, direct), photon = build_test_program(photon_source, direct);
+    const ::cl::Program eye = build_test_program(eye_source, direct),
+                        photon = build_test_program(photon_source, direct);
     const PerWavelength rho{0.9F, 0.5F, 0.1F, 1.0F, 0.8F, 0.7F};
     const std::vector<cl_float4> u = random_hypercubes(count, 75);
     const std::vector<CoatedSurface> surfaces = coated_surfaces();
@@ -260,8 +269,8 @@ TEST(KernelCoatedDiffuse, CameraAndPhotonPathsMeetTheSameSurface) {
                                     photon_weights = make_buffer<float>(count * (3 + padded_wavelengths)),
                                     spectra = make_buffer<float>(count * padded_wavelengths);
                 const Buffer<Photon> photons = make_buffer<Photon>(count);
-                run(eye, "meet", count, upload(table), upload(std::vector{material_of(surface)}), upload(layers_of(surface)),
-                    cosine, slot, upload(u), eye_weights);
+                run(eye, "meet", count, upload(table), upload(std::vector{material_of(surface)}),
+                    upload(layers_of(surface)), cosine, slot, upload(u), eye_weights);
                 run(photon, "meet", count, upload(table), upload(std::vector{material_of(surface)}),
                     upload(layers_of(surface)), cosine, slot, upload(u), photon_weights, photons,
                     make_buffer<PhotonSurface>(1), spectra);
@@ -278,8 +287,8 @@ TEST(KernelCoatedDiffuse, CameraAndPhotonPathsMeetTheSameSurface) {
                     const double body = rho[w] / (n2 * (1.0 - rho[w] * internal_reflectance(surface, w)));
                     const double outwards =
                         dense_integral([&](double mu) { return surface.shares(w, mu, true).transmitted * 2.0 * mu; });
-                    const double outwards_z =
-                        dense_integral([&](double mu) { return surface.shares(w, mu, true).transmitted * 2.0 * mu * mu; });
+                    const double outwards_z = dense_integral(
+                        [&](double mu) { return surface.shares(w, mu, true).transmitted * 2.0 * mu * mu; });
                     Moments eye_mirrored, eye_entered, photon_mirrored, photon_scattered, photon_scattered_z;
                     for (std::size_t i = 0; i < count; ++i) {
                         eye_mirrored.add(seen[i].goes_on ? seen[i].weight[w] : 0.0);

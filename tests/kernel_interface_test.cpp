@@ -1,5 +1,5 @@
-// scatter and evaluate_rough at surfaces with films, smooth and rough (kernels/interface.h), against double precision: what
-// is reflected, transmitted and lost for each wavelength, where to, and with which pdf.
+// scatter and evaluate_rough at surfaces with films, smooth and rough (kernels/interface.h), against double precision:
+// what is reflected, transmitted and lost for each wavelength, where to, and with which pdf.
 
 #include "interface_kernel.h"
 #include "microfacet_oracle.h"
@@ -36,10 +36,10 @@ std::vector<CoatedSurface> smooth_surfaces() {
             {"absorbing film on metal", MATERIAL_CONDUCTOR, false, metal_n, metal_k, {titania, absorbing}, {}}};
 }
 
-/// What is done with a share of u.x of paths is chosen evenly over [0, 1), so that sums over the middles of N pieces are right to
-/// half a path.
-void check_smooth(const InterfaceProgram& program, const CoatedSurface& surface, bool outside, double degrees, int old_slot,
-                  bool radiance) {
+/// What is done with a share of u.x of paths is chosen evenly over [0, 1), so that sums over the middles of N pieces
+/// are right to half a path.
+void check_smooth(const InterfaceProgram& program, const CoatedSurface& surface, bool outside, double degrees,
+                  int old_slot, bool radiance) {
     constexpr std::size_t count = 1 << 14;
     const auto [s, t] = tangents(normal);
     const double cosine = std::cos(degrees * std::numbers::pi / 180.0);
@@ -49,8 +49,8 @@ void check_smooth(const InterfaceProgram& program, const CoatedSurface& surface,
     std::vector<cl_float4> u;
     for (std::size_t i = 0; i < count; ++i)
         u.push_back({{(static_cast<float>(i) + 0.5F) / count, 0.0F, 0.0F, 0.0F}});
-    const std::vector<ScatteredPath> paths =
-        program.scatter(surface, std::vector<cl_float4>(count, float4_of(direction)), u, normal, s, old_slot, slot, radiance);
+    const std::vector<ScatteredPath> paths = program.scatter(
+        surface, std::vector<cl_float4>(count, float4_of(direction)), u, normal, s, old_slot, slot, radiance);
 
     const bool chooses_slot = surface.dispersive && old_slot == SLOT_ALL;
     const int kept = chooses_slot ? slot : old_slot;
@@ -116,8 +116,8 @@ TEST(KernelInterface, ConductorsReflectAlikeFromBothSides) {
         for (const double degrees : {5.0, 50.0, 80.0}) {
             const double cosine = std::cos(degrees * std::numbers::pi / 180.0);
             const Vec3 direction = std::sqrt(1.0 - cosine * cosine) * t + cosine * normal;
-            const ScatteredPath path = program.scatter(surface, {float4_of(direction)}, {{{0.5F, 0.0F, 0.0F, 0.0F}}}, normal, s,
-                                                       SLOT_ALL, 0, true)[0];
+            const ScatteredPath path = program.scatter(surface, {float4_of(direction)}, {{{0.5F, 0.0F, 0.0F, 0.0F}}},
+                                                       normal, s, SLOT_ALL, 0, true)[0];
             ASSERT_TRUE(path.goes_on) << surface.name << ", " << degrees << "°";
             for (std::size_t w = 0; w < test_wavelengths; ++w)
                 EXPECT_NEAR(path.weight(w), first_weights[w] * surface.shares(w, cosine, true).reflected,
@@ -141,7 +141,8 @@ std::vector<CoatedSurface> rough_surfaces() {
     return rough;
 }
 
-/// The frame in which `program.scatter` and `evaluate` see a surface: the tangent, across it, and the normal on one side.
+/// The frame in which `program.scatter` and `evaluate` see a surface: the tangent, across it, and the normal on one
+/// side.
 struct RoughFrame {
     Vec3 s, t, n;
     explicit RoughFrame(bool outside) : s(tangents(normal)[0]), n((outside ? 1.0 : -1.0) * normal) { t = cross(n, s); }
@@ -226,8 +227,8 @@ Scattering scattering(const CoatedSurface& surface, bool outside, const Vec3& wo
             ggx.refraction_pdf(wo, wi, eta)};
 }
 
-/// The kernel's directions and half vectors are right to some 15 units (half_vector_units): what such a change of a direction
-/// does to a value is granted.
+/// The kernel's directions and half vectors are right to some 15 units (half_vector_units): what such a change of a
+/// direction does to a value is granted.
 constexpr double direction_error = 16.0 * unit_roundoff;
 
 struct RoughCase {
@@ -241,8 +242,8 @@ struct RoughCase {
 void check_rough(const InterfaceProgram& program, const RoughCase& test) {
     constexpr std::size_t count = 1 << 16, bins = 8, points = 40;
     const CoatedSurface& surface = *test.surface;
-    const std::string where = fmt::format("{}, from {}, {}°, slot {}", surface.name, test.outside ? "outside" : "inside",
-                                          test.degrees, test.slot);
+    const std::string where = fmt::format("{}, from {}, {}°, slot {}", surface.name,
+                                          test.outside ? "outside" : "inside", test.degrees, test.slot);
     const Ggx ggx(surface.alpha);
     const RoughFrame frame(test.outside);
     const TabulatedShares shares(surface, test.outside);
@@ -258,7 +259,7 @@ void check_rough(const InterfaceProgram& program, const RoughCase& test) {
     for (std::size_t i = 0; i < bins * points; ++i) {
         for (std::size_t j = 0; j < bins * points; ++j) {
             const auto [m, solid_angle] = lune.facet((static_cast<double>(i) + 0.5) / (bins * points),
-                                                         (static_cast<double>(j) + 0.5) / (bins * points));
+                                                     (static_cast<double>(j) + 0.5) / (bins * points));
             const double cosine = dot(wo, m);
             const double share = ggx.visible_pdf(wo, m) * solid_angle / (bins * points * bins * points);
             total += share;
@@ -285,8 +286,8 @@ void check_rough(const InterfaceProgram& program, const RoughCase& test) {
     const auto counted_bin = [&](std::size_t bin) { return expected[bin] * count < 1.0 ? expected.size() - 1 : bin; };
 
     std::vector<cl_float4> u = random_hypercubes(count, 71);
-    const std::vector<ScatteredPath> paths = program.scatter(surface, std::vector<cl_float4>(count, direction), u, normal,
-                                                             frame.s, test.slot, 0, false);
+    const std::vector<ScatteredPath> paths =
+        program.scatter(surface, std::vector<cl_float4>(count, direction), u, normal, frame.s, test.slot, 0, false);
     Histogram histogram(expected.size());
     std::array<Moments, test_wavelengths> reflected_weight, transmitted_weight;
     for (std::size_t i = 0; i < count; ++i) {
@@ -326,7 +327,8 @@ void check_rough(const InterfaceProgram& program, const RoughCase& test) {
         ASSERT_NEAR(path.pdf, pdf, pdf_tolerance + 2.0 * film_error * there.pdf) << where;
         const double cosine = std::abs(wi[2]);
         ASSERT_NEAR(path.weight(w) * path.pdf, before * there.value * cosine,
-                    before * (tolerance * cosine + there.value * direction_error + film_error * there.geometry * cosine))
+                    before *
+                        (tolerance * cosine + there.value * direction_error + film_error * there.geometry * cosine))
             << where << ", wavelength " << w << (up ? ", reflected" : ", refracted");
     }
     histogram.expect_distribution(where, expected);
@@ -336,8 +338,8 @@ void check_rough(const InterfaceProgram& program, const RoughCase& test) {
         // 1e-4: midpoints of the quadrature across the border where directions come out on the wrong side.
         expect_mean(fmt::format("{}, reflected, wavelength {}", where, w), reflected_weight[w].mean(), reflected[w],
                     reflected_weight[w].standard_error(), 1e-4);
-        expect_mean(fmt::format("{}, transmitted, wavelength {}", where, w), transmitted_weight[w].mean(), transmitted[w],
-                    transmitted_weight[w].standard_error(), 1e-4);
+        expect_mean(fmt::format("{}, transmitted, wavelength {}", where, w), transmitted_weight[w].mean(),
+                    transmitted[w], transmitted_weight[w].standard_error(), 1e-4);
     }
 }
 
@@ -358,7 +360,8 @@ TEST(KernelInterface, RoughFilmsScatterAsTheOracleSays) {
     }
 }
 
-/// f(wo, wi) against the oracle for directions that nothing chose, and light that goes the other way: the same but for η².
+/// f(wo, wi) against the oracle for directions that nothing chose, and light that goes the other way: the same but for
+/// η².
 TEST(KernelInterface, RoughFilmsAreReciprocal) {
     const InterfaceProgram program;
     Random random(72);
@@ -399,7 +402,8 @@ TEST(KernelInterface, RoughFilmsAreReciprocal) {
                                  std::abs(scattering(surface, outside, a_moved, b, slot).value - f.value);
                 }
                 scattered += f.value > 0.0 ? 1 : 0;
-                const std::string where = fmt::format("{}, {}, pair {}", surface.name, outside ? "outside" : "inside", i);
+                const std::string where =
+                    fmt::format("{}, {}, pair {}", surface.name, outside ? "outside" : "inside", i);
                 ASSERT_NEAR(there[i], f.value, tolerance) << where;
                 ASSERT_NEAR(back[i] * (reflects ? 1.0 : eta * eta), f.value, 2.0 * tolerance) << where;
             }

@@ -2,6 +2,7 @@
 // rgb does not where colours come from dispersion.
 #include "image_statistics.h"
 
+#include <cctype>
 #include <cmath>
 
 namespace tristim::test {
@@ -25,15 +26,22 @@ RenderSet render_method(const Scene& scene, RenderOptions options, const MethodC
 constexpr int block = 8;
 
 struct SceneCase {
-    const char* folder;
+    const char* file; ///< in meshes/, without .pbrt
     double radius;
 };
+
+std::string test_name(const char* file) {
+    std::string name = file;
+    for (char& c : name)
+        c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+    return name;
+}
 
 class Methods : public testing::TestWithParam<SceneCase> {};
 
 TEST_P(Methods, ConvergeToOneImage) {
-    const std::string name = GetParam().folder;
-    const Scene scene = load_scene(TRISTIM_SOURCE_DIR "/meshes/" + name + "/scene.pbrt");
+    const std::string name = test_name(GetParam().file);
+    const Scene scene = load_scene(std::string(TRISTIM_SOURCE_DIR "/meshes/") + GetParam().file + ".pbrt");
     const int passes = long_tests() ? 96 : 12;
     const int runs = long_tests() ? 12 : 5;
     const Demands demands{2e-5, long_tests() ? 0.02 : 0.06};
@@ -53,9 +61,14 @@ TEST_P(Methods, ConvergeToOneImage) {
     expect_same(name + "-tristimulus:20-random-spectral", twenty_random, spectral, demands);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, Methods, testing::Values(SceneCase{"dispersion", 0.12}, SceneCase{"prism", 0.12}, SceneCase{"box", 0.12}),
-    [](const testing::TestParamInfo<SceneCase>& scene) { return std::string(scene.param.folder); });
+INSTANTIATE_TEST_SUITE_P(Scenes, Methods,
+                         testing::Values(SceneCase{"dispersion/scene", 0.12}, SceneCase{"prism/scene", 0.12},
+                                         SceneCase{"box/scene", 0.12}, SceneCase{"interference/scene", 0.2},
+                                         SceneCase{"interference-areas/a", 0.2}, SceneCase{"interference-areas/b", 0.2},
+                                         SceneCase{"interference-areas/c", 0.2}, SceneCase{"soap-bubble/scene", 0.2},
+                                         SceneCase{"anodised-titanium/scene", 0.2},
+                                         SceneCase{"antireflection/scene", 0.2}, SceneCase{"bragg-mirror/scene", 0.2}),
+                         [](const testing::TestParamInfo<SceneCase>& scene) { return test_name(scene.param.file); });
 
 /// Root of the mean squared difference of two images' means, and what of it the standard errors explain.
 struct Difference {

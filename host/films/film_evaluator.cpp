@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t lanes = 16;
 constexpr std::size_t group = 16;                  // work-items
-constexpr std::size_t rows_before_spectra = 4;     // PASS_TABLE_SPECTRA of kernels/spectrum.h
 constexpr std::size_t media_rows = 3;              // n outside; n and k of the base
 constexpr std::size_t max_table_floats = 1U << 23; // of the pass tables of one launch
 
@@ -64,7 +63,7 @@ std::vector<FilmResponse> FilmEvaluator::evaluate(const std::vector<double>& lam
 }
 
 std::size_t FilmEvaluator::table_rows() const {
-    return rows_before_spectra + media_rows + 2 * stack_.layers.size();
+    return PASS_TABLE_SPECTRA + media_rows + 2 * stack_.layers.size();
 }
 
 std::vector<FilmResponse> FilmEvaluator::evaluate_films(const std::vector<double>& lambda_nm, double angle_deg,
@@ -87,7 +86,7 @@ std::vector<float> FilmEvaluator::pass_tables(const std::vector<double>& lambda_
         const auto lambda = [&](std::size_t lane) { return lambda_nm[std::min(chunk + lane, end - 1)]; };
         for (std::size_t lane = 0; lane < lanes; ++lane)
             tables.push_back(static_cast<float>(lambda(lane)));
-        tables.insert(tables.end(), (rows_before_spectra - 1) * lanes, 0.0F); // weights, which films do not need
+        tables.insert(tables.end(), (PASS_TABLE_SPECTRA - 1) * lanes, 0.0F); // weights, which films do not need
         for (const Spectrum* spectrum : spectra) {
             for (std::size_t lane = 0; lane < lanes; ++lane)
                 tables.push_back(static_cast<float>((*spectrum)(lambda(lane))));

@@ -6,7 +6,9 @@
 namespace tristim {
 
 /// The GGX roughness α from which on a surface takes photons and ends camera paths, as a diffuse one does, unless the
-/// user says otherwise; smoother surfaces pass camera paths on. bench/roughness measures where the border lies.
+/// user says otherwise; smoother surfaces pass camera paths on. By bench/roughness photons cost a tenth more error
+/// here, three times as much at half this roughness, and less than passing on from about 0.2; but only photons bring
+/// all the light, since passing on misses what comes through glass from a light without area.
 constexpr double default_photon_roughness = 0.1;
 
 /// What a scene calls for. Kernels are built with these and hold nothing else.

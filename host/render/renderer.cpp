@@ -51,7 +51,8 @@ std::size_t rays_to_record(const RenderOptions& options) {
 } // namespace
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Device& device)
-    : device_(device), options_(options), effects_(derive_effects(scene, options.photon_roughness)), layout_(wavelength_layout(options.method)) {
+    : device_(device), options_(options), effects_(derive_effects(scene, options.photon_roughness)),
+      layout_(wavelength_layout(options.method)) {
     check_options(options);
     const FlatScene flat = flatten_scene(scene, effects_, options.width, options.height, options.region);
     scene_buffers_ = SceneBuffers(device, flat, rays_to_record(options));
@@ -62,9 +63,8 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     spectrum_is_smooth_ = Buffer<std::int32_t>(device, "spectrum kinds", flat.spectra.smooth());
     spectrum_rows_ = flat.spectra.rows();
     const auto padded = static_cast<std::size_t>(layout_.padded());
-    constexpr std::size_t rows_before_spectra = 4; // PASS_TABLE_SPECTRA of kernels/spectrum.h
     pass_table_ =
-        Buffer<float>(device, "pass table", (rows_before_spectra + static_cast<std::size_t>(spectrum_rows_)) * padded);
+        Buffer<float>(device, "pass table", (PASS_TABLE_SPECTRA + static_cast<std::size_t>(spectrum_rows_)) * padded);
 
     const auto pixels = static_cast<std::size_t>(options.region.pixels());
     radius0_ = Buffer<float>(device, "initial radii", pixels);
@@ -125,8 +125,8 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     add(sampler_table_);
     add(spectra_);
     add(pass_table_);
-    const double pixel_bytes =
-        add(radius0_) + add(visible_points_) + add(visible_surfaces_) + add(eye_spectra_) + add(gathered_flux_) + add(film_);
+    const double pixel_bytes = add(radius0_) + add(visible_points_) + add(visible_surfaces_) + add(eye_spectra_) +
+                               add(gathered_flux_) + add(film_);
     statistics_.bytes_per_pixel = pixel_bytes / options_.region.pixels();
     add(photons_);
     add(photon_surfaces_);
