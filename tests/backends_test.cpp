@@ -3,6 +3,7 @@
 
 #include "image/compare_images.h"
 #include "image/read_image.h"
+#include "test_scenes.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -76,21 +77,31 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Oclgrind,
                                          Case{"anodised-titanium/scene", "tristimulus:1"}),
                          [](const auto& test) { return fmt::format("{}_{}", folder(test.param.scene), test.index); });
 
-class Rusticl : public testing::TestWithParam<const char*> {};
+struct RusticlCase {
+    const char* scene;
+    bool slow; ///< rusticl inlines every function: films and rough surfaces build for minutes
+};
+
+class Rusticl : public testing::TestWithParam<RusticlCase> {};
 
 TEST_P(Rusticl, RendersTheSameImage) {
+    const auto [scene, slow] = GetParam();
+    if (slow && !test::long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1 for a build of minutes";
     const std::string options = "--resolution 32x32 --photons 1024 --passes 2";
-    const std::string name = "rusticl-" + folder(GetParam());
-    const Render rusticl = render("RUSTICL_ENABLE=llvmpipe", GetParam(), options + " --device rusticl", name);
+    const std::string name = "rusticl-" + folder(scene);
+    const Render rusticl = render("RUSTICL_ENABLE=llvmpipe", scene, options + " --device rusticl", name);
     ASSERT_EQ(rusticl.status, 0) << rusticl.messages;
-    const Render native = render("", GetParam(), options + " --device 'Portable Computing Language'", name + "-pocl");
+    const Render native = render("", scene, options + " --device 'Portable Computing Language'", name + "-pocl");
     ASSERT_EQ(native.status, 0) << native.messages;
     expect_same_image(rusticl, native);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Rusticl,
-                         testing::Values("dispersion/scene", "interference-areas/c", "anodised-titanium/scene"),
-                         [](const auto& test) { return folder(test.param); });
+                         testing::Values(RusticlCase{"dispersion/scene", false},
+                                         RusticlCase{"anodised-titanium/scene", true},
+                                         RusticlCase{"interference-areas/c", true}),
+                         [](const auto& test) { return folder(test.param.scene); });
 
 } // namespace
 } // namespace tristim
