@@ -136,7 +136,7 @@ bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, cons
     end->surface.outgoing = pack_normal(-path->direction);
     end->surface.tangent = pack_normal(frame.s);
     end->surface.thickness = film_thickness(scene, material, it);
-    end->surface.outside = facing.outside;
+    end->surface.outside = facing.outside ? 1 : 0;
     return false;
 }
 #endif

@@ -41,6 +41,11 @@ typedef struct Search {
 } Search;
 
 #if HAS_ROUGH_PHOTONS
+// Whether a photon on the visible point's rough surface came from the side that the camera path came from.
+bool is_on_same_side(const Search* search, uint index) {
+    return (search->photon_surfaces[index].side & 1) == search->surface.outside;
+}
+
 // A photon on a rough surface: the BSDF for its direction and the visible point's, for each wavelength.
 void add_rough_photon(const Search* search, uint index, Gathered* gathered) {
     const global Photon* photon = search->photons + index;
@@ -51,12 +56,14 @@ void add_rough_photon(const Search* search, uint index, Gathered* gathered) {
     if (photon->slot >= 0 && photon->slot != slot)
         return;
     const float3 incident = frame_from_world(&search->frame, unpack_normal(search->photon_surfaces[index].incident));
+    const bool reflected = is_on_same_side(search, index);
+    if (reflected != (incident.z > 0.0f))
+        return;  // on a curved surface: below the visible point's horizon
     const RoughScattering rough =
         evaluate_rough(search->scene, material, search->surface.thickness, outside, search->outgoing, incident, slot);
     if (rough.geometry <= 0.0f)
         return;
     ++gathered->count;
-    const bool reflected = incident.z > 0.0f;
     const Spectrum* share = reflected ? &rough.optics.reflected : &rough.optics.transmitted;
     float factor = rough.geometry;
     if (!reflected) {
@@ -85,14 +92,16 @@ bool normals_agree(uint packed, float3 normal) {
 }
 
 // Whether a photon lies on the visible point's surface, as far as normals and materials tell, on the side that counts: through a
-// rough surface light may also come from the other one.
+// rough surface light may also come from the other one. A thin slab's other face has the same normals, but the other way round.
 bool is_on_surface(const Search* search, uint index) {
     const uint packed = search->photons[index].normal;
 #if HAS_ROUGH_PHOTONS
-    if (search->photon_surfaces[index].material != search->surface.material)
+    const int side = search->photon_surfaces[index].side;
+    const int material = side < 0 ? -1 : side / 2;
+    if (material != search->surface.material)
         return false;
-    if (search->surface.material >= 0 && normals_agree(packed, -search->normal))
-        return true;
+    if (material >= 0)
+        return normals_agree(packed, is_on_same_side(search, index) ? search->normal : -search->normal);
 #endif
     return packed == search->packed_normal || normals_agree(packed, search->normal);
 }

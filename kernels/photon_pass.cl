@@ -19,9 +19,9 @@ typedef struct PhotonStore {
     uint next, end;
 } PhotonStore;
 
-// Stores a photon that arrived along `direction`; flux times `factor` is what a visible point is to add up: see the structs. Past
-// the end it only counts; the host then makes room and repeats the pass.
-void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it, float3 n, float3 direction, bool diffuse,
+// Stores a photon that arrived along `direction`; flux times `factor` is what a visible point is to add up, and
+// `side` where it lies: see the structs. Past the end it only counts; the host then makes room and repeats the pass.
+void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it, float3 n, float3 direction, int side,
                   const PathWeight* flux, float factor) {
     const uint index = store->next++;
     if (index >= store->end)
@@ -43,7 +43,7 @@ void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it,
     const Photon photon = {it->point.x, it->point.y, it->point.z, pack_normal(n), xyz.x, xyz.y, xyz.z, flux->slot};
     store->photons[index] = photon;
 #if HAS_ROUGH_PHOTONS
-    const PhotonSurface surface = {diffuse ? -1 : it->material, pack_normal(-direction)};
+    const PhotonSurface surface = {side, pack_normal(-direction)};
     store->surfaces[index] = surface;
 #endif
 }
@@ -106,7 +106,7 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
 #endif
     PathWeight reflected = reflected_diffusely(scene, material, thickness, coat, &path->weight);
     if (store_it)
-        store_photon(scene, store, it, n, path->direction, true, &reflected, INV_PI);
+        store_photon(scene, store, it, n, path->direction, -1, &reflected, INV_PI);
 #if HAS_COATED_DIFFUSE
     if (u < mirrored) {
         multiply_weight(&path->weight, &optics.reflected, 1.0f / mirrored);
@@ -168,8 +168,9 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
 #if HAS_ROUGH_PHOTONS
             if (store_it && material->takes_photons) {
                 float cosine;
-                const float3 n = facing_normal(&it, -path.direction, &cosine).normal;
-                store_photon(scene, store, &it, n, path.direction, false, &path.weight, 1.0f);
+                const Facing facing = facing_normal(&it, -path.direction, &cosine);
+                const int side = 2 * it.material + (facing.outside ? 1 : 0);
+                store_photon(scene, store, &it, facing.normal, path.direction, side, &path.weight, 1.0f);
             }
 #endif
             float3 v;

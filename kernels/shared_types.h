@@ -197,10 +197,9 @@ typedef struct VisibleSurface {
     float thickness;        // nm, of the film's first layer
 } VisibleSurface;
 
-// Beside each photon, 8 bytes: the material, or -1 on a diffuse surface, and where it came from. On a rough surface its flux is
-// not multiplied by anything.
+// Beside each photon, 8 bytes: where it lies, and where it came from. On a rough surface its flux is not multiplied by anything.
 typedef struct PhotonSurface {
-    int material;
+    int side;               // -1 on a diffuse surface; else twice the material, and 1 more if it came from outside
     tristim_uint incident;  // octahedral, back along the photon's path
 } PhotonSurface;
 

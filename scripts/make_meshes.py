@@ -76,7 +76,7 @@ def cube():
 
 
 def grid_faces(rows, columns, closed_rows):
-    """Quadrilaterals between the points of a grid, row by row; columns are joined into a ring, rows if `closed_rows`."""
+    """Quadrilaterals between the points of a grid, row by row; columns are joined to a ring, rows if `closed_rows`."""
     faces = []
     for i in range(rows if closed_rows else rows - 1):
         for j in range(columns):
@@ -118,7 +118,8 @@ def spline(knots, pieces):
         for n in range(pieces + (i == len(knots) - 2)):
             t = n / pieces
             samples.append((
-                tuple(round(0.5 * (2 * q + t * (r - p + t * (2 * p - 5 * q + 4 * r - s + t * (3 * (q - r) + s - p)))), 12)
+                tuple(round(0.5 * (2 * q + t * (r - p + t * (2 * p - 5 * q + 4 * r - s + t * (3 * (q - r) + s - p)))),
+                            12)
                       for p, q, r, s in zip(a, b, c, d)),
                 tuple(0.5 * (r - p + t * (2 * (2 * p - 5 * q + 4 * r - s) + t * 3 * (3 * (q - r) + s - p)))
                       for p, q, r, s in zip(a, b, c, d))))
@@ -132,8 +133,9 @@ def arc(centre, radius, start_degrees, end_degrees, pieces):
         angle = math.radians(start_degrees + (end_degrees - start_degrees) * i / pieces)
         sign = 1 if end_degrees > start_degrees else -1
         # rounded, so that ends which meet on the axis or each other do so exactly
-        samples.append(((round(centre[0] + radius * math.cos(angle), 12), round(centre[1] + radius * math.sin(angle), 12)),
-                        (-sign * math.sin(angle), sign * math.cos(angle))))
+        cos, sin = math.cos(angle), math.sin(angle)
+        samples.append(((round(centre[0] + radius * cos, 12), round(centre[1] + radius * sin, 12)),
+                        (-sign * sin, sign * cos)))
     return samples
 
 
@@ -163,15 +165,15 @@ def revolved(outlines, sides):
 
 def vase():
     """A vase of unit height with a wall, from the middle of its foot outwards, over the lip and down inside."""
-    knots = [(0.0, 0.0), (0.12, 0.0), (0.2, 0.012), (0.205, 0.04), (0.17, 0.085), (0.2, 0.15), (0.33, 0.32), (0.36, 0.46),
-             (0.29, 0.64), (0.17, 0.78), (0.135, 0.86), (0.16, 0.94), (0.215, 0.99), (0.215, 1.0), (0.195, 0.995),
-             (0.135, 0.935), (0.11, 0.86), (0.145, 0.78), (0.26, 0.63), (0.33, 0.46), (0.3, 0.33), (0.16, 0.17), (0.08, 0.13),
-             (0.0, 0.125)]
+    knots = [(0.0, 0.0), (0.12, 0.0), (0.2, 0.012), (0.205, 0.04), (0.17, 0.085), (0.2, 0.15), (0.33, 0.32),
+             (0.36, 0.46), (0.29, 0.64), (0.17, 0.78), (0.135, 0.86), (0.16, 0.94), (0.215, 0.99), (0.215, 1.0),
+             (0.195, 0.995), (0.135, 0.935), (0.11, 0.86), (0.145, 0.78), (0.26, 0.63), (0.33, 0.46), (0.3, 0.33),
+             (0.16, 0.17), (0.08, 0.13), (0.0, 0.125)]
     return revolved([spline(knots, 4)], sides=64)
 
 
 def lens(aperture, radius, rim):
-    """A biconvex lens about the z axis: two caps of spheres of `radius`, and a rim `rim` high at the distance `aperture`."""
+    """A biconvex lens about the z axis: two caps of spheres of `radius`, and a rim `rim` high of radius `aperture`."""
     half = math.degrees(math.asin(aperture / radius))
     depth = radius * math.cos(math.radians(half))
     return revolved([arc((0.0, depth - rim / 2), radius, -90, -90 + half, 16),

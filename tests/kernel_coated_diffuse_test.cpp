@@ -222,8 +222,10 @@ kernel void meet(const global float* pass_table, const global SurfaceMaterial* m
     path.weight.spectrum.block[0] = (floatv)(2.0f, 3.0f, 5.0f, 1.0f);
     path.weight.spectrum.block[1] = (floatv)(0.5f, 4.0f, 0.0f, 0.0f);
     path.bounced = false;
+    path.first_bounce = u[i].yz;
+    path.key = pcg4d((uint4)((uint)i, 1u, 2u, 3u));
     PhotonStore store = {photons, surfaces, spectra, (uint)i, (uint)i + 1u};
-    const bool goes_on = meet_diffuse(&scene, material, &it, true, u[i].x, u[i].yz, &path, &store);
+    const bool goes_on = meet_diffuse(&scene, material, &it, true, 0u, &path, &store);
     global float* out = weights + i * (3 + W_PADDED);
     out[0] = goes_on ? (path.bounced ? 2.0f : 1.0f) : 0.0f;
     out[1] = path.direction.z;

@@ -63,6 +63,7 @@ struct Sheet {
     std::vector<PhotonSurface> photon_surfaces;
     std::vector<std::uint32_t> item_counts;
     std::vector<float> photon_spectra, eye_spectra;
+    std::vector<bool> on_other_face;
 };
 
 Sheet make_sheet(const CoatedSurface& surface) {
@@ -118,8 +119,13 @@ Sheet make_sheet(const CoatedSurface& surface) {
             photon.slot = slot();
             sheet.photons.push_back(photon);
             // Some lie on other surfaces, here.
-            const int material = i % 8 == 7 ? (i % 16 == 7 ? -1 : 1) : 0;
-            sheet.photon_surfaces.push_back({material, pack(towards(up))});
+            const int outside = up > 0.0 ? 1 : 0;
+            const int own_side = i % 8 == 7 ? (i % 16 == 7 ? -1 : 2 + outside) : outside;
+            // And some on the other face of a slab that is all but as thin as a sheet: its outside is this one's
+            // inside.
+            const bool other_face = random.bits() % 4 == 0;
+            sheet.photon_surfaces.push_back({own_side >= 0 && other_face ? own_side ^ 1 : own_side, pack(towards(up))});
+            sheet.on_other_face.push_back(other_face);
             const float absent = std::numeric_limits<float>::quiet_NaN();
             for (std::size_t w = 0; w < padded_wavelengths; ++w)
                 sheet.photon_spectra.push_back(photon.slot != SLOT_ALL ? absent
@@ -195,7 +201,9 @@ Expected brute_force(const CoatedSurface& surface, const Sheet& sheet, const std
     };
     for (std::size_t index = 0; index < sheet.photons.size(); ++index) {
         const Photon& photon = sheet.photons[index];
-        if (index % capacity >= sheet.item_counts[index / capacity] || sheet.photon_surfaces[index].material != 0)
+        const int side = sheet.photon_surfaces[index].side;
+        if (index % capacity >= sheet.item_counts[index / capacity] || side < 0 || side > 1 ||
+            sheet.on_other_face[index])
             continue;
         const double dx = double{photon.x} - point.x, dy = double{photon.y} - point.y;
         if (dx * dx + dy * dy > double{point.radius} * point.radius)

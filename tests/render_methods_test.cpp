@@ -28,6 +28,10 @@ constexpr int block = 8;
 struct SceneCase {
     const char* file; ///< in meshes/, without .pbrt
     double radius;
+    int passes;
+    /// Lamps of lines make three wavelengths a pass too noisy to tell anything by: then tristimulus:20 alone is
+    /// compared.
+    bool all_methods;
 };
 
 std::string test_name(const char* file) {
@@ -42,7 +46,7 @@ class Methods : public testing::TestWithParam<SceneCase> {};
 TEST_P(Methods, ConvergeToOneImage) {
     const std::string name = test_name(GetParam().file);
     const Scene scene = load_scene(std::string(TRISTIM_SOURCE_DIR "/meshes/") + GetParam().file + ".pbrt");
-    const int passes = long_tests() ? 96 : 12;
+    const int passes = (long_tests() ? 8 : 1) * GetParam().passes;
     const int runs = long_tests() ? 12 : 5;
     const Demands demands{2e-5, long_tests() ? 0.02 : 0.06};
     const RenderOptions options = small_render("spectral:400", 32, 32, 8192, GetParam().radius, 12);
@@ -50,25 +54,29 @@ TEST_P(Methods, ConvergeToOneImage) {
         return block_means(render_method(scene, options, method, passes, runs), block);
     };
     const RenderSet spectral = render({"spectral:400", false});
+    const RenderSet twenty = render({"tristimulus:20", false});
+    expect_same(name + "-tristimulus:20-spectral", twenty, spectral, demands);
+    if (!GetParam().all_methods)
+        return;
     const RenderSet one = render({"tristimulus:1", false});
     const RenderSet one_random = render({"tristimulus:1", true});
-    const RenderSet twenty = render({"tristimulus:20", false});
     const RenderSet twenty_random = render({"tristimulus:20", true});
     expect_same(name + "-tristimulus:1-spectral", one, spectral, demands);
-    expect_same(name + "-tristimulus:20-spectral", twenty, spectral, demands);
     expect_same(name + "-tristimulus:1-tristimulus:20", one, twenty, demands);
     expect_same(name + "-tristimulus:1-random-spectral", one_random, spectral, demands);
     expect_same(name + "-tristimulus:20-random-spectral", twenty_random, spectral, demands);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Methods,
-                         testing::Values(SceneCase{"dispersion/scene", 0.12}, SceneCase{"prism/scene", 0.12},
-                                         SceneCase{"box/scene", 0.12}, SceneCase{"interference/scene", 0.2},
-                                         SceneCase{"interference-areas/a", 0.2}, SceneCase{"interference-areas/b", 0.2},
-                                         SceneCase{"interference-areas/c", 0.2}, SceneCase{"soap-bubble/scene", 0.2},
-                                         SceneCase{"anodised-titanium/scene", 0.2},
-                                         SceneCase{"antireflection/scene", 0.2}, SceneCase{"bragg-mirror/scene", 0.2}),
-                         [](const testing::TestParamInfo<SceneCase>& scene) { return test_name(scene.param.file); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Methods,
+    testing::Values(SceneCase{"dispersion/scene", 0.12, 12, true}, SceneCase{"prism/scene", 0.12, 12, true},
+                    SceneCase{"box/scene", 0.12, 12, true}, SceneCase{"interference/scene", 0.2, 16, false},
+                    SceneCase{"interference-areas/a", 0.2, 16, false},
+                    SceneCase{"interference-areas/b", 0.2, 16, false},
+                    SceneCase{"interference-areas/c", 0.2, 16, false}, SceneCase{"soap-bubble/scene", 0.2, 16, false},
+                    SceneCase{"anodised-titanium/scene", 0.2, 16, false},
+                    SceneCase{"antireflection/scene", 0.2, 40, false}, SceneCase{"bragg-mirror/scene", 0.2, 16, false}),
+    [](const testing::TestParamInfo<SceneCase>& scene) { return test_name(scene.param.file); });
 
 /// Root of the mean squared difference of two images' means, and what of it the standard errors explain.
 struct Difference {

@@ -86,7 +86,7 @@ TEST_P(DirectLight, SampledAndByPhotonsIsTheSame) {
     options.direct_photons = true;
     const RenderSet photons = render_seeds(scene, options, 32, 4);
     // The mean over a disc of radius 0.05 at distances about 1.4 from light and camera, of a lobe some α wide: 6e-3.
-    expect_same(GetParam().name, photons, sampled, {6e-3, 0.02});
+    expect_same(GetParam().name, photons, sampled, {6e-3, 0.03});
 }
 
 constexpr RoughSurface coated_gold{"coated_gold", true, true, 0.25, 0.5}, glass{"glass", false, false, 0.3, 0.3},
@@ -372,19 +372,20 @@ struct Border {
 class PhotonRoughness : public testing::TestWithParam<Border> {};
 
 /// Whether a rough surface takes photons or passes camera paths on must not change the image: a box over a coloured
-/// floor under an area light, which it shades, mirrors and, of glass, lets through, seen from above.
+/// floor under an area light, which it mirrors and, of glass, lets through, seen from above. A
+/// box thinner than the search radius must not mix up the photons on its two faces.
 TEST_P(PhotonRoughness, DoesNotChangeTheImage) {
     constexpr int width = 4, height = 4, passes = 64;
     Scene scene;
     scene.path = "border";
-    scene.camera = look_at({0.2, -2.4, 2.6}, {0, 0, 0.3}, {0, 0, 1}, 9.0);
+    scene.camera = look_at({0.0, -2.0, 2.4}, {0, 0, 0.4}, {0, 0, 1}, 5.0);
     add_horizontal_square(
         scene, 2.0, 0.0, true,
-        add_diffuse(scene, Spectrum::piecewise_linear({300.0, 500.0, 600.0, 900.0}, {0.3, 0.3, 0.8, 0.8})));
+        add_diffuse(scene, Spectrum::piecewise_linear({300.0, 500.0, 600.0, 900.0}, {0.05, 0.05, 0.2, 0.2})));
     add_box(scene, {-0.9, -0.9, GetParam().lower}, {0.9, 0.9, GetParam().upper}, false,
             add_rough(scene, GetParam().surface));
     const int light = add_area_light(scene, Spectrum::named("stdillum-D65"), 4.0);
-    add_parallelogram(scene, {-0.8, 0.4, 2.2}, {0, 1.2, 0}, {1.2, 0, 0}, add_diffuse(scene, Spectrum::constant(0.2)),
+    add_parallelogram(scene, {-0.4, 1.6, 2.4}, {0, 0.8, 0}, {0.8, 0, 0}, add_diffuse(scene, Spectrum::constant(0.2)),
                       light);
     RenderOptions options = small_render("tristimulus:1", width, height, 16384, 0.06, 10);
     options.photon_roughness = 0.0;
@@ -397,7 +398,8 @@ TEST_P(PhotonRoughness, DoesNotChangeTheImage) {
 
 INSTANTIATE_TEST_SUITE_P(Surfaces, PhotonRoughness,
                          testing::Values(Border{"gold", {"", true, true, 0.25, 0.25}, 0.1, 0.3},
-                                         Border{"glass", {"", false, true, 0.25, 0.25}, 0.15, 0.55}),
+                                         Border{"glass", {"", false, true, 0.25, 0.25}, 0.15, 0.55},
+                                         Border{"thin_glass", {"", false, true, 0.25, 0.25}, 0.38, 0.4}),
                          [](const testing::TestParamInfo<Border>& test) { return std::string(test.param.name); });
 
 } // namespace

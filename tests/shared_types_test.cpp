@@ -108,7 +108,7 @@ const std::vector<Field>& fields() {
         FIELD(VisibleSurface, material),
         FIELD(VisibleSurface, outgoing),
         FIELD(VisibleSurface, thickness),
-        FIELD(PhotonSurface, material),
+        FIELD(PhotonSurface, side),
         FIELD(PhotonSurface, incident),
         FIELD(FilmPixel, sum_high),
         FIELD(FilmPixel, sum_low),
