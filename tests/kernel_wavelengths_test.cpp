@@ -87,8 +87,7 @@ Spectrum line(double at_nm) {
 TEST(KernelWavelengths, WeightsSumToTheIntegralsAndPaddingWeighsNothing) {
     for (const std::string& name : methods) {
         for (const bool random_sequence : {false, true}) {
-            Passes passes(parse_method(name), random_sequence,
-                          {{bumpy(), Use::Reflectance}, {bumpy(), Use::Emission}});
+            Passes passes(parse_method(name), random_sequence, {{bumpy(), Use::Reflectance}, {bumpy(), Use::Emission}});
             for (const std::uint32_t pass : {0U, 1U, 12345U, 0xffffffffU}) {
                 passes(pass);
                 for (std::size_t channel = 0; channel < 3; ++channel) {
