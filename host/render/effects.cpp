@@ -68,21 +68,25 @@ Effects derive_effects(const Scene& scene, double photon_roughness) {
 
 Macros effect_macros(const Effects& effects) {
     const auto flag = [](bool on) { return on ? "1" : "0"; };
-    return {
-        {"HAS_FILM", flag(effects.film)},
-        {"HAS_ABSORBING_FILM", flag(effects.absorbing_film)},
-        {"HAS_COATED_DIFFUSE", flag(effects.coated_diffuse)},
-        {"HAS_ROUGH", flag(effects.rough)},
-        {"HAS_ROUGH_PHOTONS", flag(effects.rough_photons)},
-        {"HAS_NEARLY_SPECULAR", flag(effects.nearly_specular)},
-        {"HAS_ANISOTROPIC", flag(effects.anisotropic)},
-        {"HAS_TEXTURE", flag(effects.texture)},
-        {"HAS_UV", flag(effects.uv)},
-        {"HAS_DIELECTRIC", flag(effects.dielectric)},         {"HAS_DISPERSION", flag(effects.dispersion)},
-        {"HAS_CONDUCTOR", flag(effects.conductor)},           {"HAS_SHADING_NORMALS", flag(effects.shading_normals)},
-        {"HAS_THIN_LENS", flag(effects.thin_lens)},           {"HAS_POINT_LIGHT", flag(effects.point_light)},
-        {"HAS_SPOT_LIGHT", flag(effects.spot_light)},         {"HAS_DISTANT_LIGHT", flag(effects.distant_light)},
-        {"HAS_INFINITE_LIGHT", flag(effects.infinite_light)}, {"HAS_AREA_LIGHT", flag(effects.area_light)}};
+    return {{"HAS_FILM", flag(effects.film)},
+            {"HAS_ABSORBING_FILM", flag(effects.absorbing_film)},
+            {"HAS_COATED_DIFFUSE", flag(effects.coated_diffuse)},
+            {"HAS_ROUGH", flag(effects.rough)},
+            {"HAS_ROUGH_PHOTONS", flag(effects.rough_photons)},
+            {"HAS_NEARLY_SPECULAR", flag(effects.nearly_specular)},
+            {"HAS_ANISOTROPIC", flag(effects.anisotropic)},
+            {"HAS_TEXTURE", flag(effects.texture)},
+            {"HAS_UV", flag(effects.uv)},
+            {"HAS_DIELECTRIC", flag(effects.dielectric)},
+            {"HAS_DISPERSION", flag(effects.dispersion)},
+            {"HAS_CONDUCTOR", flag(effects.conductor)},
+            {"HAS_SHADING_NORMALS", flag(effects.shading_normals)},
+            {"HAS_THIN_LENS", flag(effects.thin_lens)},
+            {"HAS_POINT_LIGHT", flag(effects.point_light)},
+            {"HAS_SPOT_LIGHT", flag(effects.spot_light)},
+            {"HAS_DISTANT_LIGHT", flag(effects.distant_light)},
+            {"HAS_INFINITE_LIGHT", flag(effects.infinite_light)},
+            {"HAS_AREA_LIGHT", flag(effects.area_light)}};
 }
 
 } // namespace tristim

@@ -30,9 +30,10 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::si
 
 cl_uint SceneBuffers::bind(::cl::Kernel& kernel, const Buffer<float>& pass_table) const {
     cl_uint index = 0;
-    for (const ::cl::Buffer* buffer : {&constants_.cl(), &nodes_.cl(), &leaves_.cl(), &triangles_.cl(), &attributes_.cl(),
-                                       &materials_.cl(), &film_layers_.cl(), &textures_.cl(), &texels_.cl(), &lights_.cl(), &light_cdf_.cl(), &pass_table.cl(),
-                                       &sobol_table_.cl(), &recorded_rays_.cl(), &recorded_count_.cl()})
+    for (const ::cl::Buffer* buffer :
+         {&constants_.cl(), &nodes_.cl(), &leaves_.cl(), &triangles_.cl(), &attributes_.cl(), &materials_.cl(),
+          &film_layers_.cl(), &textures_.cl(), &texels_.cl(), &lights_.cl(), &light_cdf_.cl(), &pass_table.cl(),
+          &sobol_table_.cl(), &recorded_rays_.cl(), &recorded_count_.cl()})
         kernel.setArg(index++, *buffer);
     return index;
 }

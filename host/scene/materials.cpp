@@ -83,7 +83,8 @@ Material make_material(const std::string& kind, ParameterList& parameters, const
         material.kind = Material::Kind::Dielectric;
         material.eta = real_index(parameters, resolve);
         set_roughness(material, parameters);
-        if (material.alpha_u > 0.0 && material.eta.is_constant() && material.eta.minimum(lambda_min_nm, lambda_max_nm) == 1.0)
+        if (material.alpha_u > 0.0 && material.eta.is_constant() &&
+            material.eta.minimum(lambda_min_nm, lambda_max_nm) == 1.0)
             fail_at(parameters.where(), "{} is rough, and so its \"eta\" must not be 1", parameters.owner());
     } else if (kind == "conductor") {
         material.kind = Material::Kind::Conductor;
