@@ -59,7 +59,11 @@ float3 rough_direct_light(const Scene* scene, const global SurfaceMaterial* mate
     const DirectLight light = sample_direct(scene->lights + chosen, it, frame->n, both_sides, u_point);
     if (light.irradiance <= 0.0f)
         return 0.0f;
-    const float3 wi = frame_from_world(frame, unit_vector(light.direction));
+    const float3 towards = unit_vector(light.direction);
+    const float3 wi = frame_from_world(frame, towards);
+    // As for scattering: no light where the surface and its shading normal disagree on the side.
+    if ((dot(towards, it->normal) >= 0.0f) != (outside == (wi.z > 0.0f)))
+        return 0.0f;
     const float thickness = film_thickness(scene, material, it);
     const RoughScattering rough = evaluate_rough(scene, material, thickness, outside, wo, wi, weight->slot);
     if (rough.geometry <= 0.0f || is_occluded(scene, light.origin, light.direction, light.t_max))

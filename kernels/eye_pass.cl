@@ -31,8 +31,8 @@ typedef struct EyePath {
     PathWeight weight;
     float3 radiance;  // XYZ gathered so far
     float pdf;        // [1/sr] with which a nearly specular surface chose the direction; 0 after any other, and at the camera
-    float cosine;     // between the direction and that surface's normal
-    bool both_sides;  // whether it looks for light on both of its sides
+    float3 normal;    // of that surface, with which it looked for light
+    bool both_sides;  // whether it did so on both of its sides
 } EyePath;
 
 #if HAS_AREA_LIGHT || HAS_INFINITE_LIGHT
@@ -49,7 +49,7 @@ void see_nothing(const Scene* scene, EyePath* path) {
     const global SceneLight* light = scene->lights + scene->constants->infinite_light;
     float light_pdf = 0.0f;
 #if HAS_NEARLY_SPECULAR
-    light_pdf = infinite_light_pdf(light, path->cosine, path->both_sides);
+    light_pdf = infinite_light_pdf(light, fabs(dot(path->direction, path->normal)), path->both_sides);
 #endif
     add_emission(scene, light, light_pdf, path);
 #endif
@@ -126,6 +126,8 @@ bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, cons
     const Frame frame = surface_frame(it, facing.normal);
     float3 wo = frame_from_world(&frame, -path->direction);
     wo.z = cosine;
+    path->normal = facing.normal;
+    path->both_sides = material->kind == MATERIAL_DIELECTRIC;
     // Photons bring the light to a surface that takes them in the paper's version; no photons, no other way.
     if (!DIRECT_PHOTONS || !material->takes_photons)
         path->radiance += rough_direct_light(scene, material, it, &frame, wo, facing.outside, &path->weight, u_light, u_point);
@@ -169,7 +171,7 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
 #endif
     path.radiance = 0.0f;
     path.pdf = 0.0f;
-    path.cosine = 1.0f;
+    path.normal = 0.0f;
     path.both_sides = false;
     EyeEnd end;
     end.point.slot = SLOT_NONE;
@@ -199,10 +201,6 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
 #endif
             if (!scatter(&scene, material, &it, &path.direction, v, slot, true, &path.weight, &path.pdf))
                 break;
-#if HAS_NEARLY_SPECULAR
-            path.cosine = fabs(dot(path.direction, it.shading_normal));
-            path.both_sides = material->kind == MATERIAL_DIELECTRIC;
-#endif
         }
         path.origin = leave_surface(&it, path.direction);
     }

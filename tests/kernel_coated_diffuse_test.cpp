@@ -15,7 +15,7 @@ namespace {
 using namespace kernel_test;
 using std::numbers::pi;
 
-constexpr double film_error = 5e-6; ///< as in kernel_interface_test.cpp
+constexpr double film_error = 5e-6; ///< as in interface_surfaces.h
 
 /// ∫ f(x) dx over [0, 1] by 2 × 64 nodes, whose pieces x = a s², 1 - b s² lie dense at both ends, where a film's values
 /// have infinite slopes.

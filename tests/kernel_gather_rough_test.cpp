@@ -178,7 +178,7 @@ Value bsdf(const CoatedSurface& surface, const VisibleSurface& at, std::uint32_t
     double tolerance = 2e-5 * f + 1e-9;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         Vec3 moved = wi;
-        moved[axis] += 16.0 * unit_roundoff; // as in kernel_interface_test.cpp
+        moved[axis] += 16.0 * unit_roundoff; // as in kernel_interface_rough_test.cpp
         tolerance += 2.0 * std::abs(evaluate(moved) - f);
     }
     return {f, tolerance};
