@@ -16,17 +16,17 @@
 Spectrum body_reflectance(const Scene* scene, const global SurfaceMaterial* material, float thickness, int slot) {
     const global float* rho = spectrum_row(scene->pass_table, material->reflectance);
     const global float* eta = spectrum_row(scene->pass_table, material->eta);
-    const global float* internal = spectrum_row(scene->pass_table, material->internal_reflectance);
     const int first = max(slot, 0) / LANES, last = slot < 0 ? BLOCKS : first + 1;
     Spectrum body;
     for (int b = first; b < last; ++b) {
         const floatv n = vloadv(b, eta), r = vloadv(b, rho);
 #if HAS_TEXTURE
         const ThinFilm film = {scene->film_layers + material->film, material->film_layers, thickness};
-        const floatv f =
-            material->film_texture >= 0 ? internal_reflectance(scene->pass_table, b, &film, n) : vloadv(b, internal);
+        const floatv f = is_tabulated(material, thickness)
+                             ? tabulated_internal_reflectance(scene->pass_table, b, material, thickness)
+                             : internal_reflectance(scene->pass_table, b, &film, n);
 #else
-        const floatv f = vloadv(b, internal);
+        const floatv f = tabulated_internal_reflectance(scene->pass_table, b, material, thickness);
 #endif
         body.block[b] = r / (n * n * (1.0f - r * f));
     }

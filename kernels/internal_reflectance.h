@@ -5,6 +5,7 @@
 #include "thin_film.h"
 
 #define QUADRATURE_POINTS 48
+#define THINNEST_TABULATED 16.0f  // nm
 
 // ∫ R(μ) 2μ dμ over the cosines μ in [0, 1] in the body, whose index n is at least 1, for a block of wavelengths. The angles of which
 // something is transmitted are taken in steps of the cosine outside, with n² μ dμ = μ_o dμ_o, since R runs smoothly in μ_o; the
@@ -27,6 +28,32 @@ floatv internal_reflectance(const global float* pass_table, int block, const Thi
 #endif
     }
     return transmissible / (n * n) + total * (1.0f - absorbed);
+}
+
+// The same from the rows that film_tables.cl has filled for the material, whose film absorbs nothing: between them the cubic through the four next ones
+// (Lagrange). In steps of 4 nm (host/render/flat_scene.cpp) the phase turns by at most 0.3 radians, and the cubic is right to
+// 4e-4 of what the film makes F swing by.
+floatv tabulated_internal_reflectance(const global float* pass_table, int block, const global SurfaceMaterial* material,
+                                      float thickness) {
+    const global float* row = spectrum_row(pass_table, material->internal_reflectance);
+    if (material->internal_rows == 1)
+        return vloadv(block, row);
+    const float x = (thickness - material->internal_thickness) / material->internal_step;
+    const int i = clamp((int)x, 1, material->internal_rows - 3);
+    const float t = x - (float)i;
+    row += (i - 1) * W_PADDED;
+    return vloadv(block, row) * (-t * (t - 1.0f) * (t - 2.0f) / 6.0f) +
+           vloadv(block, row + W_PADDED) * ((t + 1.0f) * (t - 1.0f) * (t - 2.0f) / 2.0f) +
+           vloadv(block, row + 2 * W_PADDED) * (-(t + 1.0f) * t * (t - 2.0f) / 2.0f) +
+           vloadv(block, row + 3 * W_PADDED) * ((t + 1.0f) * t * (t - 1.0f) / 6.0f);
+}
+
+// Whether the rows tell of a thickness. They do not where a texture goes on beyond its values, nor for the thinnest films, whose
+// reflectance at grazing angles grows too quickly with the thickness for a cubic.
+bool is_tabulated(const global SurfaceMaterial* material, float thickness) {
+    const float begin = max(material->internal_thickness, THINNEST_TABULATED);
+    const float end = material->internal_thickness + (float)(material->internal_rows - 1) * material->internal_step;
+    return material->internal_rows == 1 || (material->internal_rows > 1 && thickness >= begin && thickness <= end);
 }
 
 #endif

@@ -90,7 +90,7 @@ typedef struct Triangle {
 #define MATERIAL_DIELECTRIC 1
 #define MATERIAL_CONDUCTOR 2
 
-// A material, 48 bytes; reflectance, eta, k and internal_reflectance are rows of the table of spectra.
+// A material, 64 bytes; reflectance, eta, k and internal_reflectance are rows of the table of spectra.
 typedef struct SurfaceMaterial {
     int kind;
     int reflectance;
@@ -102,7 +102,11 @@ typedef struct SurfaceMaterial {
     int film_texture;  // thickness of the first layer in nm, or -1
     float alpha_u, alpha_v;  // GGX roughness along the surface's tangent and across; 0: smooth
     int takes_photons;  // rough enough to be a visible point
-    int internal_reflectance;  // of diffuse light from below the film of a coated diffuse surface
+    // Of a coated diffuse surface: the reflectance of its film for diffuse light from below, in internal_rows rows (0: not
+    // tabulated) for thicknesses of the first layer from internal_thickness nm on in steps of internal_step.
+    int internal_reflectance, internal_rows;
+    float internal_thickness, internal_step;
+    int unused;
 } SurfaceMaterial;
 
 // A layer of a thin film, 16 bytes: index eta + ik, rows of the table of spectra.
@@ -217,7 +221,7 @@ typedef struct FilmPixel {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BvhNode) == 256 && sizeof(BvhLeaf) == 320);
 static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
-static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 48);
+static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 64);
 static_assert(sizeof(SceneFilmLayer) == 16 && sizeof(SceneTexture) == 96);
 static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(VisibleSurface) == 20 && sizeof(PhotonSurface) == 8);

@@ -88,6 +88,8 @@ inline SurfaceMaterial material_of(const CoatedSurface& surface) {
     m.alpha_u = surface.alpha.s[0];
     m.alpha_v = surface.alpha.s[1];
     m.internal_reflectance = internal_row;
+    m.internal_rows = 1;
+    m.internal_thickness = surface.layers.empty() ? 0.0F : static_cast<float>(surface.layers[0].thickness);
     return m;
 }
 

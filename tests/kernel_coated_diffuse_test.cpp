@@ -101,7 +101,7 @@ std::vector<float> filled_table(const CoatedSurface& surface, const PerWavelengt
         value = name == "HAS_ABSORBING_FILM" && !absorbing ? "0" : value;
     Buffer<float> table = upload(pass_table_of(surface, reflectance));
     run(build_test_program("#include \"film_tables.cl\"\n", macros), "film_tables", 2,
-        upload(std::vector{material_of(surface)}), upload(layers_of(surface)), table);
+        upload(std::vector{material_of(surface)}), upload(layers_of(surface)), 1, table);
     return table.read(test_device());
 }
 
@@ -112,6 +112,59 @@ TEST(KernelCoatedDiffuse, InternalReflectanceIsTheQuadratures) {
             EXPECT_NEAR(table[(4 + internal_row) * padded_wavelengths + w], internal_reflectance(surface, w),
                         internal_error(surface))
                 << surface.name << ", wavelength " << w;
+        }
+    }
+}
+
+/// Where a texture varies the thickness, F comes from a cubic between rows 4 nm apart. F is a sum of cosines of the
+/// film's phase and its multiples. With n = 2.5 at 420 nm the phase turns by 4π n 4/λ = 0.3 from row to row, and
+/// Lagrange's cubic is off by (9/384) 0.3⁴ = 2e-4 of the first cosine's amplitude; the second one's, 16 times that, may
+/// be a sixteenth.
+TEST(KernelCoatedDiffuse, InternalReflectanceBetweenItsRows) {
+    constexpr int rows = 251;
+    constexpr double last = 1000.0;
+    for (CoatedSurface surface : coated_surfaces()) {
+        if (absorbs(surface) || surface.layers[0].thickness > 0.0)
+            continue;
+        SurfaceMaterial material = material_of(surface);
+        material.film_texture = 0;
+        material.internal_reflectance = first_layer_row + 2;
+        material.internal_rows = rows;
+        material.internal_thickness = 0.0F;
+        material.internal_step = static_cast<float>(last / (rows - 1));
+        std::vector<float> table = pass_table_of(surface);
+        table.resize(table.size() + rows * padded_wavelengths, 0.0F);
+        const ::cl::Program program = build_test_program(R"(
+#include "film_tables.cl"
+kernel void interpolate(const global SurfaceMaterial* material, const global float* pass_table, const global float* thickness,
+                        global float* values) {
+    const size_t i = get_global_id(0);
+    for (int b = 0; b < BLOCKS; ++b)
+        vstorev(tabulated_internal_reflectance(pass_table, b, material, thickness[i]), b, values + i * W_PADDED);
+}
+)",
+                                                         interface_macros());
+        const Buffer<float> filled = upload(table);
+        const Buffer<SurfaceMaterial> materials = upload(std::vector{material});
+        run(program, "film_tables", 2 * rows, materials, upload(layers_of(surface)), rows, filled);
+        std::vector<float> thicknesses{16.0F, 18.0F, 998.0F, 1000.0F};
+        Random random(7);
+        for (int i = 0; i < 24; ++i)
+            thicknesses.push_back(static_cast<float>(random(16.0, last)));
+        const Buffer<float> values = make_buffer<float>(thicknesses.size() * padded_wavelengths);
+        run(program, "interpolate", thicknesses.size(), materials, filled, upload(thicknesses), values);
+        const std::vector<float> found = values.read(test_device());
+        for (std::size_t w = 0; w < test_wavelengths; ++w) {
+            std::vector<double> expected;
+            for (const float thickness : thicknesses) {
+                surface.layers[0].thickness = thickness;
+                expected.push_back(internal_reflectance(surface, w));
+            }
+            const auto [least, most] = std::minmax_element(expected.begin(), expected.end());
+            for (std::size_t i = 0; i < thicknesses.size(); ++i)
+                EXPECT_NEAR(found[i * padded_wavelengths + w], expected[i],
+                            4e-4 * (*most - *least) + internal_error(surface))
+                    << surface.name << ", " << thicknesses[i] << " nm, wavelength " << w;
         }
     }
 }

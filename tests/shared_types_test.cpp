@@ -76,6 +76,7 @@ const std::vector<Field>& fields() {
         FIELD(SurfaceMaterial, alpha_u),
         FIELD(SurfaceMaterial, takes_photons),
         FIELD(SurfaceMaterial, internal_reflectance),
+        FIELD(SurfaceMaterial, internal_step),
         FIELD(SceneFilmLayer, thickness),
         FIELD(SceneFilmLayer, k),
         FIELD(SceneFilmLayer, unused),

@@ -9,8 +9,7 @@ void add_film(const Scene& scene, const Material& material, Effects& effects) {
     const Film& film = material.film;
     effects.film = true;
     effects.coated_diffuse |= material.kind == Material::Kind::Diffuse;
-    for (const FilmLayer& layer : film.layers)
-        effects.absorbing_film |= !(layer.k.is_constant() && layer.k(lambda_min_nm) == 0.0);
+    effects.absorbing_film |= absorbs(film);
     if (film.thickness_texture >= 0) {
         effects.texture = true;
         const Texture& texture = scene.textures[static_cast<std::size_t>(film.thickness_texture)];
@@ -29,6 +28,12 @@ void add_roughness(const Material& material, Effects& effects) {
 
 bool takes_photons(const Material& material, double photon_roughness) {
     return std::max(material.alpha_u, material.alpha_v) >= photon_roughness;
+}
+
+bool absorbs(const Film& film) {
+    return std::any_of(film.layers.begin(), film.layers.end(), [](const FilmLayer& layer) {
+        return !(layer.k.is_constant() && layer.k(lambda_min_nm) == 0.0);
+    });
 }
 
 bool has_coloured_eye(const Effects& effects) {

@@ -38,6 +38,9 @@ struct Effects {
 /// Whether the larger of the surface's α reaches the border.
 bool takes_photons(const Material& material, double photon_roughness);
 
+/// Whether a layer has k > 0.
+bool absorbs(const Film& film);
+
 /// Whether camera paths may carry a throughput of its own for every wavelength: COLOURED_EYE of kernels/config.h.
 bool has_coloured_eye(const Effects& effects);
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "render/flat_texture.h"
+#include "scene/textures.h"
 #include "spectra/colour.h"
 
 #include <algorithm>
@@ -63,6 +64,29 @@ void add_film(const Film& film, FlatScene& flat, SurfaceMaterial& m) {
     }
 }
 
+/// Makes room for the internal reflectance of a film on a diffuse body, which film_tables.cl works out in every pass:
+/// for one thickness, or for those between the texture's least and largest value. Reflectances of films that absorb may
+/// change too much from row to row, and are worked out at each hit.
+void add_internal_reflectance(const Scene& scene, const Film& film, FlatScene& flat, SurfaceMaterial& m) {
+    constexpr double step = 4.0; // nm, see tabulated_internal_reflectance
+    constexpr double longest = 4096.0;
+    double low = film.layers.front().thickness;
+    double high = low;
+    if (film.thickness_texture >= 0) {
+        const auto range = value_range(scene.textures[static_cast<std::size_t>(film.thickness_texture)]);
+        low = range[0];
+        high = range[1];
+    }
+    if (high > low && (high - low > longest || absorbs(film)))
+        return;
+    m.internal_rows = high > low ? std::max(static_cast<int>(std::ceil((high - low) / step)) + 1, 4) : 1;
+    m.internal_thickness = static_cast<float>(low);
+    m.internal_step = static_cast<float>((high - low) / std::max(m.internal_rows - 1, 1));
+    m.internal_reflectance = flat.spectra.rows();
+    for (int row = 0; row < m.internal_rows; ++row)
+        flat.spectra.add(Spectrum(), SpectrumTable::Use::Reflectance);
+}
+
 void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) {
     using Use = SpectrumTable::Use;
     for (const Material& material : scene.materials) {
@@ -73,7 +97,7 @@ void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) 
             m.reflectance = flat.spectra.add(material.reflectance, Use::Reflectance);
             if (!material.film.layers.empty()) {
                 m.eta = flat.spectra.add(material.eta, Use::Index);
-                m.internal_reflectance = flat.spectra.add(Spectrum(), Use::Reflectance); // film_tables.cl fills it
+                add_internal_reflectance(scene, material.film, flat, m);
             }
             break;
         case Material::Kind::Dielectric:

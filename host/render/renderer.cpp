@@ -62,6 +62,8 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     spectra_ = Buffer<float>(device, "spectra", flat.spectra.values(options.method));
     spectrum_is_smooth_ = Buffer<std::int32_t>(device, "spectrum kinds", flat.spectra.smooth());
     spectrum_rows_ = flat.spectra.rows();
+    for (const SurfaceMaterial& material : flat.materials)
+        film_table_rows_ = std::max(film_table_rows_, material.internal_rows);
     const auto padded = static_cast<std::size_t>(layout_.padded());
     pass_table_ =
         Buffer<float>(device, "pass table", (PASS_TABLE_SPECTRA + static_cast<std::size_t>(spectrum_rows_)) * padded);
@@ -94,7 +96,7 @@ void Renderer::build_kernels() {
         return ::cl::Kernel(build_program(device_, file, macros, build), name);
     };
     wavelengths_ = kernel("wavelengths.cl", "wavelengths");
-    if (effects_.coated_diffuse)
+    if (film_table_rows_ > 0)
         film_tables_ = kernel("film_tables.cl", "film_tables");
     eye_pass_ = kernel("eye_pass.cl", "eye_pass");
     photon_pass_ = kernel("photon_pass.cl", "photon_pass");
@@ -194,13 +196,15 @@ void Renderer::fill_wavelengths(std::uint32_t pass) {
     wavelengths_.setArg(argument++, pass_table_.cl());
     const auto wavelengths = static_cast<std::size_t>(layout_.padded());
     enqueue(Step::Wavelengths, wavelengths_, wavelengths, std::min(wavelengths, pixel_group));
-    if (!effects_.coated_diffuse)
+    if (film_table_rows_ == 0)
         return;
     film_tables_.setArg(0, scene_buffers_.materials().cl());
     film_tables_.setArg(1, scene_buffers_.film_layers().cl());
-    film_tables_.setArg(2, pass_table_.cl());
-    const std::size_t rows = static_cast<std::size_t>(layout_.blocks) * scene_buffers_.materials().size();
-    enqueue(Step::Wavelengths, film_tables_, rows, 1);
+    film_tables_.setArg(2, film_table_rows_);
+    film_tables_.setArg(3, pass_table_.cl());
+    const std::size_t items = static_cast<std::size_t>(layout_.blocks) * static_cast<std::size_t>(film_table_rows_) *
+                              scene_buffers_.materials().size();
+    enqueue(Step::Wavelengths, film_tables_, items, 1);
 }
 
 void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {

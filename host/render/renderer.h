@@ -75,6 +75,7 @@ class Renderer {
     Buffer<float> spectra_;
     Buffer<std::int32_t> spectrum_is_smooth_;
     int spectrum_rows_ = 0;
+    int film_table_rows_ = 0; ///< of the material that has most
     Buffer<float> pass_table_;
 
     Buffer<float> radius0_;
