@@ -19,7 +19,9 @@ bool is_nearly_specular(const global SurfaceMaterial* material) {
 
 // Scatters a path at a dielectric or a conductor; u are random numbers, of which u.x chooses between reflection and refraction.
 // `radiance` says that the path runs from the camera, `slot` is what it keeps should the surface be dispersive. Returns
-// whether the path goes on. *pdf [1/sr] becomes that of the new direction, 0 for a smooth surface, which has none.
+// whether the path goes on. *pdf [1/sr] becomes that of the new direction, 0 for a smooth surface, which has none. Inlined, as both
+// passes' meet_diffuse, it makes a pass a hundredth shorter on PoCL.
+__attribute__((always_inline))
 bool scatter(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, float3* direction, float3 u,
              int slot, bool radiance, PathWeight* weight, float* pdf) {
     *pdf = 0.0f;

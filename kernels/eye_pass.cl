@@ -87,6 +87,7 @@ void make_visible_point(const Interaction* it, float3 n, int slot, EyeEnd* end) 
 }
 
 // At a diffuse surface; returns whether the path goes on, reflected by a film.
+__attribute__((always_inline))
 bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, float u_lobe, float u_light,
                   float2 u_point, EyePath* path, EyeEnd* end) {
     float cosine;
@@ -184,16 +185,17 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
         const Interaction it = make_interaction(&scene, &hit);
         see_emission(&scene, &it, hit.t, &path);
         const global SurfaceMaterial* material = materials + it.material;
-        float3 v;
-        v.x = depth == 0 ? u.EYE_FIRST_SCATTER : random_step(scramble.s2 + pass * 0x632be5abu, (uint)depth);
-#if HAS_ROUGH
-        v.y = random_step(scramble.s0 + pass * 0x632be5abu, (uint)depth);
-        v.z = random_step(scramble.s1 + pass * 0x632be5abu, (uint)depth);
-#endif
+        float3 v = 0.0f;
+        if (material->kind != MATERIAL_DIFFUSE || HAS_COATED_DIFFUSE)
+            v.x = depth == 0 ? u.EYE_FIRST_SCATTER : random_step(scramble.s2 + pass * 0x632be5abu, (uint)depth);
         if (material->kind == MATERIAL_DIFFUSE) {
             if (!meet_diffuse(&scene, material, &it, v.x, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))
                 break;
         } else {
+#if HAS_ROUGH
+            v.y = random_step(scramble.s0 + pass * 0x632be5abu, (uint)depth);
+            v.z = random_step(scramble.s1 + pass * 0x632be5abu, (uint)depth);
+#endif
 #if HAS_ROUGH
             if (material->alpha_u > 0.0f &&
                 !meet_rough(&scene, material, &it, slot, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))

@@ -85,6 +85,7 @@ float2 direction_numbers(const PhotonPath* path, uint depth) {
 
 // At a diffuse surface: stores a photon if it is to, and ends the path by Russian roulette in proportion to what is reflected, so
 // that the path's flux summed over its wavelengths stays the same. Returns whether the path goes on.
+__attribute__((always_inline))
 bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, bool store_it, uint depth,
                   PhotonPath* path, PhotonStore* store) {
     const float u = random_step(path->key.x, depth);
