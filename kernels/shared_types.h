@@ -14,7 +14,7 @@ typedef std::uint32_t tristim_uint;
 // The pass's wavelengths and every spectrum of the scene at them, filled by wavelengths.cl: rows of W_PADDED floats.
 //   row 0         λ in nm
 //   rows 1 to 3   weights c_w of X, Y and Z: XYZ = Σ_w c_w L(λ_w); zero in the padding
-//   row 4 + s     spectrum s of the scene
+//   row 4 + s     spectrum s of the scene; behind them the rows that film_tables.cl fills
 #define PASS_TABLE_SPECTRA 4
 
 // Eight children in structure-of-arrays form, 256 bytes. child >= 0 is a node, child < 0 is ~leaf. Empty slots have

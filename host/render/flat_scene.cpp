@@ -67,7 +67,7 @@ void add_film(const Film& film, FlatScene& flat, SurfaceMaterial& m) {
 /// Makes room for the internal reflectance of a film on a diffuse body, which film_tables.cl works out in every pass:
 /// for one thickness, or for those between the texture's least and largest value. Reflectances of films that absorb may
 /// change too much from row to row, and are worked out at each hit.
-void add_internal_reflectance(const Scene& scene, const Film& film, FlatScene& flat, SurfaceMaterial& m) {
+void add_internal_reflectance(const Scene& scene, const Film& film, SurfaceMaterial& m) {
     constexpr double step = 4.0; // nm, see tabulated_internal_reflectance
     constexpr double longest = 4096.0;
     double low = film.layers.front().thickness;
@@ -82,9 +82,14 @@ void add_internal_reflectance(const Scene& scene, const Film& film, FlatScene& f
     m.internal_rows = high > low ? std::max(static_cast<int>(std::ceil((high - low) / step)) + 1, 4) : 1;
     m.internal_thickness = static_cast<float>(low);
     m.internal_step = static_cast<float>((high - low) / std::max(m.internal_rows - 1, 1));
-    m.internal_reflectance = flat.spectra.rows();
-    for (int row = 0; row < m.internal_rows; ++row)
-        flat.spectra.add(Spectrum(), SpectrumTable::Use::Reflectance);
+}
+
+/// Once all spectra are in the table: the film tables' rows lie behind them.
+void place_film_tables(FlatScene& flat) {
+    for (SurfaceMaterial& m : flat.materials) {
+        m.internal_reflectance = flat.spectra.rows() + flat.film_table_rows;
+        flat.film_table_rows += m.internal_rows;
+    }
 }
 
 void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) {
@@ -97,7 +102,7 @@ void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) 
             m.reflectance = flat.spectra.add(material.reflectance, Use::Reflectance);
             if (!material.film.layers.empty()) {
                 m.eta = flat.spectra.add(material.eta, Use::Index);
-                add_internal_reflectance(scene, material.film, flat, m);
+                add_internal_reflectance(scene, material.film, m);
             }
             break;
         case Material::Kind::Dielectric:
@@ -294,6 +299,7 @@ FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, i
         rows.push_back(flat.spectra.add(light.emission, SpectrumTable::Use::Emission));
         luminances.push_back(spectrum_to_xyz(light.emission)[1]);
     }
+    place_film_tables(flat);
     SceneConstants& c = flat.constants;
     c.infinite_light = -1;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {

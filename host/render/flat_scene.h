@@ -24,6 +24,7 @@ struct FlatScene {
     std::vector<SceneLight> lights; ///< an area light becomes one for each of its triangles
     std::vector<float> light_cdf;   ///< lights.size() + 1 values, by power
     SpectrumTable spectra;
+    int film_table_rows = 0; ///< of the pass table behind the spectra, which film_tables.cl fills
 };
 
 /// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no

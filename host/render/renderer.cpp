@@ -66,7 +66,8 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
         film_table_rows_ = std::max(film_table_rows_, material.internal_rows);
     const auto padded = static_cast<std::size_t>(layout_.padded());
     pass_table_ =
-        Buffer<float>(device, "pass table", (PASS_TABLE_SPECTRA + static_cast<std::size_t>(spectrum_rows_)) * padded);
+        Buffer<float>(device, "pass table",
+                      static_cast<std::size_t>(PASS_TABLE_SPECTRA + spectrum_rows_ + flat.film_table_rows) * padded);
 
     const auto pixels = static_cast<std::size_t>(options.region.pixels());
     radius0_ = Buffer<float>(device, "initial radii", pixels);
