@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/stopwatch.h"
+#include "commands/device_options.h"
 #include "opencl/buffer.h"
 #include "opencl/program.h"
 #include "shared_types.h"
@@ -162,7 +163,7 @@ void add_bench_film_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench-film", "Time of one thin-film reflectance");
     const auto options = std::make_shared<Options>();
     command->add_flag("--json", options->json, "print a JSON list instead of a table");
-    command->add_option("--device", options->device, "device by index or part of its name (default: first CPU)");
+    add_device_option(*command, options->device);
     command->add_option("--repeats", options->repeats, "timed runs of each film")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

@@ -5,6 +5,7 @@
 #include "bvh/bench_meshes.h"
 #include "bvh/embree_tracer.h"
 #include "bvh/ray_tracer.h"
+#include "commands/device_options.h"
 
 #include <algorithm>
 #include <chrono>
@@ -280,7 +281,7 @@ void add_bench_rays_command(CLI::App& app) {
         app.add_subcommand("bench-rays", "Mrays/s of the traversal kernel beside Embree's rtcIntersect1/rtcOccluded1");
     const auto options = std::make_shared<Options>();
     command->add_flag("--json", options->json, "print a JSON list instead of a table");
-    command->add_option("--device", options->device, "device by index or part of its name (default: first CPU)");
+    add_device_option(*command, options->device);
     command->add_option("--repeats", options->repeats, "timed runs of each tracer")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

@@ -1,6 +1,7 @@
 #include "commands/film.h"
 
 #include "base/error.h"
+#include "commands/device_options.h"
 #include "films/film_colour.h"
 #include "films/film_report.h"
 #include "films/illuminant.h"
@@ -153,11 +154,8 @@ void add_film_command(CLI::App& app) {
     CLI::Option* csv = command->add_flag("--csv", o->csv, "Print CSV instead of a table");
     command->add_flag("--json", o->json, "Print JSON instead of a table")->excludes(csv);
     command->add_option("--plot", o->plot, "Draw curves, with colours where they fit; no table")->type_name("FILE.png");
-    command->add_option("--device", o->device, "OpenCL device: index, or part of its name or platform [first CPU]")
-        ->type_name("INDEX|NAME");
-    command->add_option("--math", o->math, "Kernel arithmetic: precise, or fast (relaxed math)")
-        ->check(CLI::IsMember({"precise", "fast"}))
-        ->capture_default_str();
+    add_device_option(*command, o->device);
+    add_math_option(*command, o->math);
     command->footer(footer);
     command->callback([o] { film(*o); });
 }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/region.h"
+#include "commands/device_options.h"
 #include "commands/parse.h"
 
 #include <cmath>
@@ -35,8 +36,7 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
     command.add_option("--region", a.region, "Render only pixels X0 <= x < X1, Y0 <= y < Y1 [all]")
         ->type_name("X0,Y0,X1,Y1");
     command.add_option("--seed", a.seed, "Seed of all random numbers [scene, else 0]");
-    command.add_option("--device", a.device, "OpenCL device: index, or part of its name or platform [first CPU]")
-        ->type_name("INDEX|NAME");
+    add_device_option(command, a.device);
     command.add_option("--direct", a.direct, "Direct light: sample lights, or leave it to the photons")
         ->check(CLI::IsMember({"sample", "photons"}))
         ->capture_default_str();
@@ -56,9 +56,7 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
                     "GGX roughness (alpha) from which on surfaces take photons; camera paths go on at smoother ones")
         ->type_name("ALPHA")
         ->capture_default_str();
-    command.add_option("--math", a.math, "Kernel arithmetic: precise, or fast (relaxed math)")
-        ->check(CLI::IsMember({"precise", "fast"}))
-        ->capture_default_str();
+    add_math_option(command, a.math);
     command.add_option("--dump-kernels", a.dump_kernels, "Write the OpenCL programs as built, options included")
         ->type_name("DIR");
 }

@@ -1,7 +1,7 @@
 #include "films/film_stack.h"
 
 #include "base/error.h"
-#include "films/value_range.h"
+#include "base/parse_number.h"
 
 #include <cmath>
 #include <string_view>

@@ -1,20 +1,12 @@
 #include "films/value_range.h"
 
 #include "base/error.h"
+#include "base/parse_number.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace tristim {
-
-std::optional<double> parse_number(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size())
-        return std::nullopt;
-    return value;
-}
 
 std::vector<double> parse_range(const std::string& text, const std::string& what) {
     std::vector<double> numbers;

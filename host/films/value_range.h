@@ -1,14 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace tristim {
-
-/// The number that is all of the text, in the C locale's notation ("1e3", "inf"), else none.
-std::optional<double> parse_number(std::string_view text);
 
 /// The most values that a range may have.
 inline constexpr double max_range_values = 1e6;

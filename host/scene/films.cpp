@@ -1,9 +1,9 @@
 #include "scene/films.h"
 
+#include "base/parse_number.h"
 #include "spectra/complex_index.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 
 namespace tristim {
@@ -62,10 +62,8 @@ std::vector<Spectrum> number_indices(ParameterList& parameters, const char* name
 
 /// k from a number, a .spd file, a spectrum's name or a material's name.
 Spectrum absorption(const std::string& text, const SourceLocation& where, const PathResolver& resolve) {
-    double number = 0.0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc() && stop == text.data() + text.size())
-        return Spectrum::constant(number);
+    if (const std::optional<double> number = parse_number(text))
+        return Spectrum::constant(*number);
     if (is_spectrum_file(text))
         return Spectrum::read_spd(resolve(text, where));
     const std::vector<std::string> spectra = named_spectra();

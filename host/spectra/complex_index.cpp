@@ -1,11 +1,11 @@
 #include "spectra/complex_index.h"
 
 #include "base/error.h"
+#include "base/parse_number.h"
 #include "spectra/near_matches.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -54,18 +54,10 @@ std::string without_prefix_and_suffix(std::string name) {
     return name;
 }
 
-std::optional<double> number(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size())
-        return std::nullopt;
-    return value;
-}
-
 /// A number or a .spd file.
 std::optional<Spectrum> parse_part(const std::string& text,
                                    const std::function<std::string(const std::string&)>& resolve) {
-    if (const std::optional<double> value = number(text))
+    if (const std::optional<double> value = parse_number(text))
         return Spectrum::constant(*value);
     if (text.ends_with(".spd"))
         return Spectrum::read_spd(resolve ? resolve(text) : text);
