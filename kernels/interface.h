@@ -4,9 +4,7 @@
 #define TRISTIM_INTERFACE_H
 
 #include "microfacet.h"
-#include "optics.h"
-#include "path_weight.h"
-#include "scene.h"
+#include "specular.h"
 #include "thin_film.h"
 
 // Thickness in nm of the outermost layer of the film where it is met; 0 without a film.
@@ -65,12 +63,6 @@ Frame surface_frame(const Interaction* it, float3 n) {
     return make_frame(n);
 }
 
-// Index of the side that light comes from over that of the other, for a dielectric.
-float inverse_relative_eta(const Scene* scene, const global SurfaceMaterial* material, bool outside, int slot) {
-    const float eta = spectrum_row(scene->pass_table, material->eta)[max(slot, 0)];
-    return outside ? 1.0f / eta : eta;
-}
-
 #if HAS_ROUGH
 // What a rough surface does with light between two directions: `reflectance` (for each wavelength, of its facets) times geometry is
 // the BSDF that scatters flux.
@@ -120,6 +112,7 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
         float3 m = facing.normal;
         float cos_i = cosine;
 #if HAS_ROUGH
+        float3 facet;  // m in the surface's frame
         const float2 alpha = (float2)(material->alpha_u, material->alpha_v);
         float3 wo;
         Frame frame;
@@ -127,7 +120,7 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
             frame = surface_frame(it, facing.normal);
             wo = frame_from_world(&frame, -*direction);
             wo.z = cosine;
-            const float3 facet = sample_ggx_visible_normal(wo, alpha, u.yz);
+            facet = sample_ggx_visible_normal(wo, alpha, u.yz);
             cos_i = clamp(dot(wo, facet), 0.0f, 1.0f);
             m = frame_to_world(&frame, facet);
         }
@@ -160,7 +153,6 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
             if ((wi.z > 0.0f) != reflected)
                 return false;
             weight->scale *= ggx_visible_normal_weight(wo, wi, alpha);
-            const float3 facet = frame_from_world(&frame, m);
             *pdf = reflected ? probability * ggx_reflection_pdf(wo, facet, alpha)
                              : (1.0f - probability) * ggx_refraction_pdf(wo, wi, facet, 1.0f / inverse_eta, alpha);
         }

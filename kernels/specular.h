@@ -1,10 +1,16 @@
-// Smooth dielectrics and conductors without a film.
+// Smooth dielectrics and conductors without a film, and what others share with them.
 #ifndef TRISTIM_SPECULAR_H
 #define TRISTIM_SPECULAR_H
 
 #include "optics.h"
 #include "path_weight.h"
 #include "scene.h"
+
+// Index of the side that light comes from over that of the other, for a dielectric.
+float inverse_relative_eta(const Scene* scene, const global SurfaceMaterial* material, bool outside, int slot) {
+    const float eta = spectrum_row(scene->pass_table, material->eta)[max(slot, 0)];
+    return outside ? 1.0f / eta : eta;
+}
 
 #if HAS_DIELECTRIC
 // Reflects or refracts about a normal on the incident side; u in [0, 1) decides.
@@ -22,10 +28,9 @@ float3 reflect_or_refract(float3 direction, float3 n, float cos_i, float inverse
 // (Veach 1997, section 5.2). Returns the new direction.
 float3 scatter_dielectric(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it,
                           float3 direction, float u, bool radiance, PathWeight* weight) {
-    const float inside_over_outside = spectrum_row(scene->pass_table, material->eta)[max(weight->slot, 0)];
     float cos_i;
     const Facing facing = facing_normal(it, -direction, &cos_i);
-    const float inverse_eta = facing.outside ? 1.0f / inside_over_outside : inside_over_outside;
+    const float inverse_eta = inverse_relative_eta(scene, material, facing.outside, weight->slot);
     bool refracted;
     float3 scattered = reflect_or_refract(direction, facing.normal, cos_i, inverse_eta, u, &refracted);
 #if HAS_SHADING_NORMALS
