@@ -50,6 +50,42 @@ struct CoatedSurface {
     }
 };
 
+/// For kernels of tests, after kernels/bsdf.h: what is met, with what, and how the path fares.
+inline const std::string path_source = R"(
+Scene scene_of(const global float* pass_table, const global SceneFilmLayer* layers) {
+    Scene scene;
+    scene.pass_table = pass_table;
+    scene.film_layers = layers;
+    return scene;
+}
+Interaction surface_at(float3 normal, float3 tangent) {
+    Interaction it;
+    it.point = 0.0f;
+    it.normal = it.shading_normal = normal;
+    it.extent = 1.0f;
+    it.material = 0;
+    it.light = -1;
+    it.uv = 0.0f;
+    it.tangent = tangent;
+    return it;
+}
+PathWeight first_weight(int slot) {
+    PathWeight weight;
+    weight.scale = 1.0f;
+    weight.slot = slot;
+    weight.spectrum.block[0] = (floatv)(2.0f, 3.0f, 5.0f, 1.0f);
+    weight.spectrum.block[1] = (floatv)(0.5f, 4.0f, 0.0f, 0.0f);
+    return weight;
+}
+void store_path(float state, float second, const PathWeight* weight, global float* out) {
+    out[0] = state;
+    out[1] = second;
+    out[2] = weight->scale;
+    for (int b = 0; b < BLOCKS; ++b)
+        vstorev(weight->spectrum.block[b], b, out + 3);
+}
+)";
+
 /// Rows of the pass table, where SceneFilmLayer and SurfaceMaterial of a CoatedSurface point: eta, k, two spare rows,
 /// and eta and k of each layer.
 constexpr int eta_row = 0, k_row = 1, reflectance_row = 2, internal_row = 3, first_layer_row = 4;
@@ -180,48 +216,25 @@ class InterfaceProgram {
     }
 
     static constexpr const char* source = R"(
-#define PATH_SPECTRUM 1
-#include "bsdf.h"
-
 kernel void scatter_paths(const global float* pass_table, const global SurfaceMaterial* material,
                           const global SceneFilmLayer* layers, const global float4* directions, const global float4* u,
                           float3 normal, float3 tangent, int old_slot, int slot, int radiance, global float4* scattered,
                           global float* weights) {
     const size_t i = get_global_id(0);
-    Scene scene;
-    scene.pass_table = pass_table;
-    scene.film_layers = layers;
-    Interaction it;
-    it.point = 0.0f;
-    it.normal = it.shading_normal = normal;
-    it.extent = 1.0f;
-    it.material = 0;
-    it.light = -1;
-    it.uv = 0.0f;
-    it.tangent = 3.0f * tangent + 0.5f * normal;
-    PathWeight weight;
-    weight.scale = 1.0f;
-    weight.slot = old_slot;
-    weight.spectrum.block[0] = (floatv)(2.0f, 3.0f, 5.0f, 1.0f);
-    weight.spectrum.block[1] = (floatv)(0.5f, 4.0f, 0.0f, 0.0f);
+    const Scene scene = scene_of(pass_table, layers);
+    const Interaction it = surface_at(normal, 3.0f * tangent + 0.5f * normal);
+    PathWeight weight = first_weight(old_slot);
     float3 d = directions[i].xyz;
     float pdf;
     const bool goes_on = scatter(&scene, material, &it, &d, u[i].xyz, slot, radiance != 0, &weight, &pdf);
     scattered[i] = (float4)(d, pdf);
-    global float* out = weights + i * (3 + W_PADDED);
-    out[0] = goes_on ? 1.0f : 0.0f;
-    out[1] = (float)weight.slot;
-    out[2] = weight.scale;
-    for (int b = 0; b < BLOCKS; ++b)
-        vstorev(weight.spectrum.block[b], b, out + 3);
+    store_path(goes_on ? 1.0f : 0.0f, (float)weight.slot, &weight, weights + i * (3 + W_PADDED));
 }
 kernel void evaluate(const global float* pass_table, const global SurfaceMaterial* material,
                      const global SceneFilmLayer* layers, const global float4* wo, const global float4* wi,
                      int reflection_outside, int transmission_outside, int slot, global float* values) {
     const size_t i = get_global_id(0);
-    Scene scene;
-    scene.pass_table = pass_table;
-    scene.film_layers = layers;
+    const Scene scene = scene_of(pass_table, layers);
     const bool reflects = wi[i].z > 0.0f;
     const bool outside = reflects ? reflection_outside : transmission_outside;
     const RoughScattering rough = evaluate_rough(&scene, material, layers->thickness, outside, wo[i].xyz, wi[i].xyz, slot);
@@ -231,7 +244,8 @@ kernel void evaluate(const global float* pass_table, const global SurfaceMateria
 }
 )";
 
-    const ::cl::Program program_ = build_test_program(source, interface_macros());
+    const ::cl::Program program_ =
+        build_test_program("#define PATH_SPECTRUM 1\n#include \"bsdf.h\"\n" + path_source + source, interface_macros());
 };
 
 } // namespace tristim::kernel_test

@@ -222,69 +222,37 @@ TEST(KernelCoatedDiffuse, AlbedoIsTheClosedFormAndAWhiteBodyLosesNothing) {
 
 /// Both passes at a coated diffuse surface, called as the passes call them.
 const char* const eye_source = R"(
-#include "eye_pass.cl"
 kernel void meet(const global float* pass_table, const global SurfaceMaterial* material, const global SceneFilmLayer* layers,
                  float cosine, int slot, const global float4* u, global float* weights) {
     const size_t i = get_global_id(0);
-    Scene scene;
-    scene.pass_table = pass_table;
-    scene.film_layers = layers;
-    Interaction it;
-    it.point = 0.0f;
-    it.normal = it.shading_normal = (float3)(0.0f, 0.0f, 1.0f);
-    it.material = 0;
-    it.uv = 0.0f;
-    it.tangent = 0.0f;
+    const Scene scene = scene_of(pass_table, layers);
+    const Interaction it = surface_at((float3)(0.0f, 0.0f, 1.0f), (float3)(0.0f));
     EyePath path;
     path.direction = (float3)(sqrt(1.0f - cosine * cosine), 0.0f, -cosine);
-    path.weight.scale = 1.0f;
-    path.weight.slot = slot;
-    path.weight.spectrum.block[0] = (floatv)(2.0f, 3.0f, 5.0f, 1.0f);
-    path.weight.spectrum.block[1] = (floatv)(0.5f, 4.0f, 0.0f, 0.0f);
+    path.weight = first_weight(slot);
     path.pdf = 1.0f;
     path.radiance = 0.0f;
     EyeEnd end;
     const bool goes_on = meet_diffuse(&scene, material, &it, u[i].x, 0.5f, (float2)(0.5f), &path, &end);
-    global float* out = weights + i * (3 + W_PADDED);
-    out[0] = goes_on ? 1.0f : 0.0f;
-    out[1] = path.direction.z;
-    out[2] = path.weight.scale;
-    for (int b = 0; b < BLOCKS; ++b)
-        vstorev(path.weight.spectrum.block[b], b, out + 3);
+    store_path(goes_on ? 1.0f : 0.0f, path.direction.z, &path.weight, weights + i * (3 + W_PADDED));
 }
 )";
 const char* const photon_source = R"(
-#include "photon_pass.cl"
 kernel void meet(const global float* pass_table, const global SurfaceMaterial* material, const global SceneFilmLayer* layers,
                  float cosine, int slot, const global float4* u, global float* weights, global Photon* photons,
                  global PhotonSurface* surfaces, global float* spectra) {
     const size_t i = get_global_id(0);
-    Scene scene;
-    scene.pass_table = pass_table;
-    scene.film_layers = layers;
-    Interaction it;
-    it.point = 0.0f;
-    it.normal = it.shading_normal = (float3)(0.0f, 0.0f, 1.0f);
-    it.material = 0;
-    it.uv = 0.0f;
-    it.tangent = 0.0f;
+    const Scene scene = scene_of(pass_table, layers);
+    const Interaction it = surface_at((float3)(0.0f, 0.0f, 1.0f), (float3)(0.0f));
     PhotonPath path;
     path.direction = (float3)(sqrt(1.0f - cosine * cosine), 0.0f, -cosine);
-    path.weight.scale = 1.0f;
-    path.weight.slot = slot;
-    path.weight.spectrum.block[0] = (floatv)(2.0f, 3.0f, 5.0f, 1.0f);
-    path.weight.spectrum.block[1] = (floatv)(0.5f, 4.0f, 0.0f, 0.0f);
+    path.weight = first_weight(slot);
     path.bounced = false;
     path.first_bounce = u[i].yz;
     path.key = pcg4d((uint4)((uint)i, 1u, 2u, 3u));
     PhotonStore store = {photons, surfaces, spectra, (uint)i, (uint)i + 1u};
     const bool goes_on = meet_diffuse(&scene, material, &it, true, 0u, &path, &store);
-    global float* out = weights + i * (3 + W_PADDED);
-    out[0] = goes_on ? (path.bounced ? 2.0f : 1.0f) : 0.0f;
-    out[1] = path.direction.z;
-    out[2] = path.weight.scale;
-    for (int b = 0; b < BLOCKS; ++b)
-        vstorev(path.weight.spectrum.block[b], b, out + 3);
+    store_path(goes_on ? (path.bounced ? 2.0f : 1.0f) : 0.0f, path.direction.z, &path.weight, weights + i * (3 + W_PADDED));
 }
 )";
 
@@ -310,8 +278,9 @@ TEST(KernelCoatedDiffuse, CameraAndPhotonPathsMeetTheSameSurface) {
     constexpr std::size_t count = 1 << 15;
     Macros direct = interface_macros(); // no light to sample
     direct.emplace_back("DIRECT_PHOTONS", "1");
-    const ::cl::Program eye = build_test_program(eye_source, direct),
-                        photon = build_test_program(photon_source, direct);
+    const ::cl::Program eye = build_test_program("#include \"eye_pass.cl\"\n" + path_source + eye_source, direct),
+                        photon =
+                            build_test_program("#include \"photon_pass.cl\"\n" + path_source + photon_source, direct);
     const PerWavelength rho{0.9F, 0.5F, 0.1F, 1.0F, 0.8F, 0.7F};
     const std::vector<cl_float4> u = random_hypercubes(count, 75);
     const std::vector<CoatedSurface> surfaces = coated_surfaces();

@@ -10,13 +10,6 @@
 namespace tristim::test {
 namespace {
 
-Light environment(const Spectrum& emission) {
-    Light light;
-    light.kind = Light::Kind::Infinite;
-    light.emission = emission;
-    return light;
-}
-
 TestImage uniform_image(int width, int height, const Xyz& xyz) {
     return {width, height, std::vector<Xyz>(static_cast<std::size_t>(width * height), xyz)};
 }

@@ -8,13 +8,6 @@
 namespace tristim::test {
 namespace {
 
-Light environment(const Spectrum& emission) {
-    Light light;
-    light.kind = Light::Kind::Infinite;
-    light.emission = emission;
-    return light;
-}
-
 /// Unpolarised Fresnel reflectance of an interface from vacuum to a complex index (Born & Wolf 1999, section 14.2), by
 /// complex arithmetic.
 double fresnel(double cos_i, std::complex<double> index) {

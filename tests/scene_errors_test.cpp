@@ -6,6 +6,7 @@ namespace tristim {
 namespace {
 
 using test::error_of;
+using test::expect_message;
 using test::SceneFolder;
 using test::with_lit_world;
 using test::with_world;
@@ -30,9 +31,7 @@ TEST_P(SceneError, NamesFileLineAndWord) {
     const std::string message = error_of([&] { folder.load(bad.text); });
     const std::string file = folder.path("scene.pbrt");
     const std::string start = bad.line > 0 ? file + ":" + std::to_string(bad.line) + ": " : file + ": ";
-    EXPECT_EQ(message.rfind(start, 0), 0u) << message;
-    EXPECT_NE(message.find(bad.word), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    expect_message(message, start, bad.word);
 }
 
 std::string label_of(const testing::TestParamInfo<BadScene>& info) {

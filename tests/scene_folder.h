@@ -52,6 +52,13 @@ std::string error_of(Function&& function) {
     return {};
 }
 
+/// Adds failures unless a message is one line that starts so (file and line) and holds the words.
+inline void expect_message(const std::string& message, const std::string& start, const std::string& words) {
+    EXPECT_EQ(message.rfind(start, 0), 0u) << message;
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
 /// A whole scene around a piece of the world block.
 inline std::string with_world(const std::string& world) {
     return "Camera \"perspective\"\nWorldBegin\n" + world;

@@ -72,6 +72,13 @@ int add_conductor(Scene& scene, const Spectrum& eta, const Spectrum& k) {
     return add_material(scene, material);
 }
 
+Light environment(const Spectrum& emission) {
+    Light light;
+    light.kind = Light::Kind::Infinite;
+    light.emission = emission;
+    return light;
+}
+
 int add_area_light(Scene& scene, const Spectrum& emission, double radiance) {
     Light light;
     light.kind = Light::Kind::Area;

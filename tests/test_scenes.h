@@ -27,6 +27,9 @@ int add_diffuse(Scene& scene, const Spectrum& reflectance);
 int add_dielectric(Scene& scene, const Spectrum& eta);
 int add_conductor(Scene& scene, const Spectrum& eta, const Spectrum& k);
 
+/// A uniform environment of radiance 1 times the spectrum.
+Light environment(const Spectrum& emission);
+
 /// Adds an area light and returns its index.
 int add_area_light(Scene& scene, const Spectrum& emission, double radiance);
 
