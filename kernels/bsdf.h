@@ -17,6 +17,14 @@ bool is_nearly_specular(const global SurfaceMaterial* material) {
     return HAS_NEARLY_SPECULAR && material->alpha_u > 0.0f && !material->takes_photons;
 }
 
+// A path that meets a dispersive surface with every wavelength goes on with the one of `slot`.
+void meet_dispersion(const global SurfaceMaterial* material, int slot, PathWeight* weight) {
+#if HAS_DISPERSION
+    if (material->dispersive && weight->slot < 0)
+        keep_slot(weight, slot);
+#endif
+}
+
 // Scatters a path at a dielectric or a conductor; u are random numbers, of which u.x chooses between reflection and refraction.
 // `radiance` says that the path runs from the camera, `slot` is what it keeps should the surface be dispersive. Returns
 // whether the path goes on. *pdf [1/sr] becomes that of the new direction, 0 for a smooth surface, which has none. Inlined, as both
@@ -25,10 +33,7 @@ __attribute__((always_inline))
 bool scatter(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, float3* direction, float3 u,
              int slot, bool radiance, PathWeight* weight, float* pdf) {
     *pdf = 0.0f;
-#if HAS_DISPERSION
-    if (material->dispersive && weight->slot < 0)
-        keep_slot(weight, slot);
-#endif
+    meet_dispersion(material, slot, weight);
 #if HAS_FILM || HAS_ROUGH
     if (material->film_layers > 0 || material->alpha_u > 0.0f)
         return scatter_interface(scene, material, it, direction, u, radiance, weight, pdf);

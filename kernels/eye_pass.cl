@@ -118,10 +118,7 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
 // At a rough surface, before it scatters the path; returns whether the path goes on.
 bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, int slot, float u_light,
                 float2 u_point, EyePath* path, EyeEnd* end) {
-#if HAS_DISPERSION
-    if (material->dispersive && path->weight.slot < 0)
-        keep_slot(&path->weight, slot);
-#endif
+    meet_dispersion(material, slot, &path->weight);
     float cosine;
     const Facing facing = facing_normal(it, -path->direction, &cosine);
     const Frame frame = surface_frame(it, facing.normal);
@@ -129,7 +126,7 @@ bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, cons
     wo.z = cosine;
     path->normal = facing.normal;
     path->both_sides = material->kind == MATERIAL_DIELECTRIC;
-    // Photons bring the light to a surface that takes them in the paper's version; no photons, no other way.
+    // With DIRECT_PHOTONS direct light comes with the photons, but only where photons are taken.
     if (!DIRECT_PHOTONS || !material->takes_photons)
         path->radiance += rough_direct_light(scene, material, it, &frame, wo, facing.outside, &path->weight, u_light, u_point);
     if (!material->takes_photons)
@@ -195,8 +192,6 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
 #if HAS_ROUGH
             v.y = random_step(scramble.s0 + pass * 0x632be5abu, (uint)depth);
             v.z = random_step(scramble.s1 + pass * 0x632be5abu, (uint)depth);
-#endif
-#if HAS_ROUGH
             if (material->alpha_u > 0.0f &&
                 !meet_rough(&scene, material, &it, slot, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))
                 break;
