@@ -28,6 +28,13 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
     command.add_option("scene", a.scene, "Scene file (pbrt-v4 syntax)")->required()->type_name("SCENE");
     command.add_option("--method", a.method, "Wavelengths: tristimulus:N (N sets of three), spectral:400 or rgb")
         ->capture_default_str();
+    add_render_settings(command, a);
+    add_device_option(command, a.device);
+    command.add_option("--dump-kernels", a.dump_kernels, "Write the OpenCL programs as built, options included")
+        ->type_name("DIR");
+}
+
+void add_render_settings(CLI::App& command, RenderArguments& a) {
     command.add_option("--sequence", a.sequence, "Wavelength sequence: stratified, or random as in the paper")
         ->check(CLI::IsMember({"stratified", "random"}))
         ->capture_default_str();
@@ -36,7 +43,6 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
     command.add_option("--region", a.region, "Render only pixels X0 <= x < X1, Y0 <= y < Y1 [all]")
         ->type_name("X0,Y0,X1,Y1");
     command.add_option("--seed", a.seed, "Seed of all random numbers [scene, else 0]");
-    add_device_option(command, a.device);
     command.add_option("--direct", a.direct, "Direct light: sample lights, or leave it to the photons")
         ->check(CLI::IsMember({"sample", "photons"}))
         ->capture_default_str();
@@ -50,6 +56,13 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
         .add_option("--initial-radius", a.initial_radius,
                     "First search radius in scene units, or auto [scene, else auto]")
         ->type_name("R|auto");
+    command.add_option("--radius-factor", a.radius_factor, "Factor on the first search radius, given or measured")
+        ->type_name("F")
+        ->capture_default_str();
+    command
+        .add_option("--alpha", a.alpha,
+                    "Share of new photons kept as the search radius shrinks, in (0, 1): less shrinks it faster")
+        ->capture_default_str();
     command.add_option("--max-depth", a.max_depth, "Vertices after which a path ends [scene, else 16]");
     command
         .add_option("--photon-roughness", a.photon_roughness,
@@ -57,8 +70,6 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
         ->type_name("ALPHA")
         ->capture_default_str();
     add_math_option(command, a.math);
-    command.add_option("--dump-kernels", a.dump_kernels, "Write the OpenCL programs as built, options included")
-        ->type_name("DIR");
 }
 
 RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
@@ -83,6 +94,8 @@ RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
         options.radius = parse_initial_radius(a.initial_radius);
     options.direct_photons = a.direct == "photons";
     options.statistics_radius = a.radius == "statistics";
+    options.radius_factor = a.radius_factor;
+    options.alpha = a.alpha;
     options.photon_roughness = a.photon_roughness;
     options.fast_math = a.math == "fast";
     options.dump_kernels = a.dump_kernels;

@@ -19,6 +19,8 @@ struct RenderArguments {
     std::string direct = "sample";
     std::string radius = "global";
     std::string initial_radius;
+    double radius_factor = 1.0;
+    double alpha = radius_alpha;
     double photon_roughness = default_photon_roughness;
     std::string math = "precise";
     std::string device;
@@ -28,8 +30,11 @@ struct RenderArguments {
     std::optional<std::uint32_t> seed;
 };
 
-/// Registers SCENE and the options.
+/// Registers SCENE, --method and the options.
 void add_render_arguments(CLI::App& command, RenderArguments& arguments);
+
+/// Registers only the options that commands with other scenes, methods and devices share.
+void add_render_settings(CLI::App& command, RenderArguments& arguments);
 
 /// What the arguments and the scene say together. Throws Error for values that make no sense.
 RenderOptions resolve_options(const RenderArguments& arguments, const Scene& scene);

@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 
+#include <cmath>
+
 namespace tristim {
 
 RenderOptions options_from_scene(const RenderSettings& settings) {
@@ -33,6 +35,10 @@ void check_options(const RenderOptions& options) {
         fail("maximum depth {} is not between 1 and {}", options.max_depth, deepest);
     if (options.radius && !(*options.radius > 0.0))
         fail("search radius {} is not positive", *options.radius);
+    if (!(options.radius_factor > 0.0 && std::isfinite(options.radius_factor)))
+        fail("radius factor {} is not a positive number", options.radius_factor);
+    if (!(options.alpha > 0.0 && options.alpha < 1.0))
+        fail("alpha {} is not between 0 and 1", options.alpha);
     if (!(options.photon_roughness >= 0.0))
         fail("photon roughness {} is not a number from 0 on", options.photon_roughness);
 }

@@ -3,6 +3,7 @@
 #include "render/effects.h"
 #include "render/flat_scene.h"
 #include "render/method.h"
+#include "render/radius_schedule.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -21,6 +22,8 @@ struct RenderOptions {
     int photons_per_pass = 0;     ///< photon paths
     int max_depth = 0;            ///< vertices of a path
     std::optional<double> radius; ///< initial search radius, scene units; none: a pilot pass measures it per pixel
+    double radius_factor = 1.0;   ///< on the initial radius, given or measured
+    double alpha = radius_alpha;  ///< share of new photons kept as the radius shrinks
     std::uint32_t seed = 0;
     bool direct_photons = false;    ///< photons count from their first hit, direct light is not sampled
     bool statistics_radius = false; ///< Hachisuka et al. 2008's statistics of each pixel

@@ -52,7 +52,7 @@ std::size_t rays_to_record(const RenderOptions& options) {
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Device& device)
     : device_(device), options_(options), effects_(derive_effects(scene, options.photon_roughness)),
-      layout_(wavelength_layout(options.method)) {
+      layout_(wavelength_layout(options.method)), seed_(options.seed) {
     check_options(options);
     const FlatScene flat = flatten_scene(scene, effects_, options.width, options.height, options.region);
     scene_buffers_ = SceneBuffers(device, flat, rays_to_record(options));
@@ -123,33 +123,35 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     statistics_.buffer_bytes = scene_buffers_.sizes();
     const auto add = [this](const auto& buffer) {
         statistics_.buffer_bytes.emplace_back(buffer.name(), buffer.bytes());
-        return static_cast<double>(buffer.bytes());
+        return std::uint64_t{buffer.bytes()};
     };
     add(sampler_table_);
     add(spectra_);
     add(pass_table_);
-    const double pixel_bytes = add(radius0_) + add(visible_points_) + add(visible_surfaces_) + add(eye_spectra_) +
-                               add(gathered_flux_) + add(film_);
-    statistics_.bytes_per_pixel = pixel_bytes / options_.region.pixels();
-    add(photons_);
-    add(photon_surfaces_);
-    add(photon_spectra_);
-    for (const auto& size : sorter_.sizes())
+    statistics_.pixel_bytes = add(radius0_) + add(visible_points_) + add(visible_surfaces_) + add(eye_spectra_) +
+                              add(gathered_flux_) + add(film_);
+    statistics_.bytes_per_pixel = static_cast<double>(statistics_.pixel_bytes) / options_.region.pixels();
+    statistics_.photon_bytes = add(photons_) + add(photon_surfaces_) + add(photon_spectra_);
+    for (const auto& size : sorter_.sizes()) {
         statistics_.buffer_bytes.push_back(size);
+        statistics_.photon_bytes += size.second;
+    }
     statistics_.bytes_per_photon = static_cast<double>(sizeof(Photon) + 2 * sizeof(cl_uint2)) +
                                    (effects_.rough_photons ? static_cast<double>(sizeof(PhotonSurface)) : 0.0) +
                                    (store_spectra ? static_cast<double>(sizeof(float)) * layout_.padded() : 0.0);
 }
 
 void Renderer::run_pilot() {
-    largest_radius0_ = static_cast<float>(options_.radius.value_or(1.0));
+    largest_radius0_ = static_cast<float>(options_.radius.value_or(1.0) * options_.radius_factor);
     radius0_.fill(device_, largest_radius0_);
     clear_film();
     fill_wavelengths(pilot_pass);
     trace_eye_paths(pilot_pass, 1.0F);
     trace_photons(pilot_pass);
     if (!options_.radius) {
-        const std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
+        std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
+        for (float& radius : radii)
+            radius *= static_cast<float>(options_.radius_factor);
         radius0_.write(device_, radii);
         largest_radius0_ = *std::max_element(radii.begin(), radii.end());
         trace_eye_paths(pilot_pass, 1.0F); // visible points hold radii
@@ -170,12 +172,13 @@ void Renderer::clear_film() {
     enqueue(Step::Film, film_clear_, film_.size(), pixel_group);
 }
 
-void Renderer::render_pass(std::uint32_t pass) {
+void Renderer::render_pass(std::uint32_t pass, std::uint32_t seed, std::uint32_t radius_pass) {
     const Stopwatch stopwatch;
+    seed_ = seed;
     if (options_.record_rays)
         scene_buffers_.clear_recorded_rays(device_);
     fill_wavelengths(pass);
-    trace_eye_paths(pass, static_cast<float>(radius_scale(pass)));
+    trace_eye_paths(pass, static_cast<float>(radius_scale(radius_pass, options_.alpha)));
     trace_photons(pass);
     sort_photons();
     gather_photons();
@@ -188,7 +191,7 @@ void Renderer::render_pass(std::uint32_t pass) {
 
 void Renderer::fill_wavelengths(std::uint32_t pass) {
     cl_uint argument = 0;
-    wavelengths_.setArg(argument++, options_.seed);
+    wavelengths_.setArg(argument++, seed_);
     wavelengths_.setArg(argument++, pass);
     wavelengths_.setArg(argument++, sampler_table_.cl());
     wavelengths_.setArg(argument++, spectra_.cl());
@@ -210,7 +213,7 @@ void Renderer::fill_wavelengths(std::uint32_t pass) {
 
 void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
     cl_uint argument = scene_buffers_.bind(eye_pass_, pass_table_);
-    eye_pass_.setArg(argument++, options_.seed);
+    eye_pass_.setArg(argument++, seed_);
     eye_pass_.setArg(argument++, pass);
     eye_pass_.setArg(argument++, radius0_.cl());
     eye_pass_.setArg(argument++, scale);
@@ -233,7 +236,7 @@ void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
 void Renderer::trace_photons(std::uint32_t pass) {
     for (;;) {
         cl_uint argument = scene_buffers_.bind(photon_pass_, pass_table_);
-        photon_pass_.setArg(argument++, options_.seed);
+        photon_pass_.setArg(argument++, seed_);
         photon_pass_.setArg(argument++, pass);
         photon_pass_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
         photon_pass_.setArg(argument++, capacity_per_item_);
@@ -274,7 +277,7 @@ void Renderer::gather_photons() {
 void Renderer::add_to_film() {
     film_add_.setArg(0, visible_points_.cl());
     film_add_.setArg(1, gathered_flux_.cl());
-    film_add_.setArg(2, static_cast<float>(radius_alpha));
+    film_add_.setArg(2, static_cast<float>(options_.alpha));
     film_add_.setArg(3, film_.cl());
     enqueue(Step::Film, film_add_, film_.size(), pixel_group);
 }
@@ -307,6 +310,13 @@ void Renderer::collect_times() {
         statistics_.step_seconds[static_cast<std::size_t>(step)] += 1e-9 * static_cast<double>(end - begin);
     }
     events_.clear();
+}
+
+void Renderer::restore(const std::vector<FilmPixel>& film, std::uint64_t passes, double seconds) {
+    film_.write(device_, film);
+    statistics_.passes = passes;
+    statistics_.photons_emitted = passes * static_cast<std::uint64_t>(options_.photons_per_pass);
+    statistics_.render_seconds = seconds;
 }
 
 RayTotals Renderer::rays() const {

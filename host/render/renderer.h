@@ -24,9 +24,18 @@ class Renderer {
     /// rendered, a kernel does not build or the device has too little memory.
     Renderer(const Scene& scene, const RenderOptions& options, const Device& device);
 
-    void render_pass(std::uint32_t pass);
+    void render_pass(std::uint32_t pass) { render_pass(pass, options_.seed, pass); }
+
+    /// The same pass of another seed, with the search radius of pass `radius_pass`.
+    void render_pass(std::uint32_t pass, std::uint32_t seed, std::uint32_t radius_pass);
 
     FilmImage film() const;
+
+    /// The running sums, which another renderer of the same scene, options and device goes on from.
+    std::vector<FilmPixel> film_pixels() const { return film_.read(device_); }
+
+    /// Goes on from the sums after `passes` passes that took `seconds`, as if this renderer had rendered them.
+    void restore(const std::vector<FilmPixel>& film, std::uint64_t passes, double seconds);
 
     /// Rays traced so far, those of the pilot left out.
     RayTotals rays() const;
@@ -78,6 +87,7 @@ class Renderer {
     int film_table_rows_ = 0; ///< of the material that has most
     Buffer<float> pass_table_;
 
+    std::uint32_t seed_ = 0; ///< of the pass
     Buffer<float> radius0_;
     float largest_radius0_ = 0.0F;
     Buffer<VisiblePoint> visible_points_;

@@ -29,6 +29,8 @@ struct RenderStatistics {
     std::uint64_t photons_emitted = 0;
     std::uint64_t photons_stored = 0;
     std::vector<std::pair<std::string, std::uint64_t>> buffer_bytes;
+    std::uint64_t pixel_bytes = 0;  ///< of buffers that grow with the pixels
+    std::uint64_t photon_bytes = 0; ///< of buffers that grow with the photons: photon map and grid
     double bytes_per_pixel = 0.0;
     double bytes_per_photon = 0.0; ///< photon, its spectral fluxes and its sort keys
 };
