@@ -7,6 +7,7 @@
 #include "commands/render_arguments.h"
 #include "image/output_file.h"
 #include "image/write_image.h"
+#include "render/image_metadata.h"
 #include "render/pilot.h"
 #include "render/renderer.h"
 #include "render/stats_json.h"
@@ -60,24 +61,6 @@ std::uint64_t render_passes(Renderer& renderer, const Progress::Limits& limits, 
     return done;
 }
 
-ImageMetadata metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples) {
-    const RenderOptions& options = renderer.options();
-    const RenderStatistics& statistics = renderer.statistics();
-    const auto integer = [](auto value) { return static_cast<std::int64_t>(value); };
-    return {{"scene", scene},
-            {"method", options.method.name()},
-            {"sequence", options.random_sequence ? std::string("random") : std::string("stratified")},
-            {"passes", integer(statistics.passes)},
-            {"photons", integer(statistics.photons_emitted)},
-            {"seed", integer(options.seed)},
-            {"device", renderer.device().info.name},
-            {"driver", renderer.device().info.driver},
-            {"seconds_rendering", statistics.render_seconds},
-            {"seconds_building_kernels", statistics.build_kernels_seconds},
-            {"non_finite_samples", integer(rejected_samples)},
-            {"version", std::string(TRISTIM_VERSION)}};
-}
-
 void run(RenderCommand& command) {
     const Stopwatch loading;
     const Scene scene = load_scene(command.arguments.scene);
@@ -110,14 +93,14 @@ void run(RenderCommand& command) {
                                    command.exposure};
     for (const std::string& path : command.outfiles) {
         if (is_exr(path))
-            write_exr(path, image, space, metadata(renderer, command.arguments.scene, film.rejected_samples));
+            write_exr(path, image, space, image_metadata(renderer, command.arguments.scene, film.rejected_samples));
         else
             write_png(path, image, tone_mapping);
     }
     if (!command.stats.empty()) {
         const std::string json =
             stats_json(renderer, command.arguments.scene, load_seconds, film.rejected_samples).dump(2) + "\n";
-        replace_file(command.stats, {reinterpret_cast<const unsigned char*>(json.data()), json.size()});
+        replace_file(command.stats, json);
     }
     if (film.rejected_samples > 0)
         fmt::print(stderr, "warning: {} samples were not finite and left out\n", film.rejected_samples);

@@ -70,10 +70,14 @@ ImageDifference compare_images(const XyzImage& a, const XyzImage& b, const Regio
     return difference;
 }
 
-ImageDifference compare_images(const XyzImage& a, const XyzImage& b) {
+void check_same_pixels(const XyzImage& a, const XyzImage& b) {
     if (a.full_width != b.full_width || a.full_height != b.full_height || a.region != b.region)
         fail("the images differ in size: the first is {}, the second {}; --region compares a part that both hold",
              describe(a), describe(b));
+}
+
+ImageDifference compare_images(const XyzImage& a, const XyzImage& b) {
+    check_same_pixels(a, b);
     return compare_images(a, b, a.region);
 }
 

@@ -23,6 +23,9 @@ struct ImageDifference {
 /// The difference within a region of the whole image. Throws Error unless both images hold all of it.
 ImageDifference compare_images(const XyzImage& a, const XyzImage& b, const Region& region);
 
+/// Throws Error unless both have the same size and region.
+void check_same_pixels(const XyzImage& a, const XyzImage& b);
+
 /// The difference in all pixels. Throws Error unless both have the same size and region.
 ImageDifference compare_images(const XyzImage& a, const XyzImage& b);
 

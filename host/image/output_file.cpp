@@ -120,4 +120,8 @@ void replace_file(const std::string& path, std::span<const unsigned char> bytes)
     file.replace_target();
 }
 
+void replace_file(const std::string& path, std::string_view text) {
+    replace_file(path, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+}
+
 } // namespace tristim

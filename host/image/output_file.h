@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace tristim {
 
@@ -13,5 +14,8 @@ void check_output_file(const std::string& path);
 /// the disk and renames it. A symbolic link stays and its target is replaced. Throws Error, with the temporary file
 /// removed.
 void replace_file(const std::string& path, std::span<const unsigned char> bytes);
+
+/// The same with text.
+void replace_file(const std::string& path, std::string_view text);
 
 } // namespace tristim

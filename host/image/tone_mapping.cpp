@@ -86,8 +86,7 @@ double srgb_encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-std::vector<std::array<std::uint8_t, 3>> display_image(const XyzImage& image, const ToneMapping& mapping) {
-    const ToneCurve curve(image, mapping);
+std::vector<std::array<std::uint8_t, 3>> display_image(const XyzImage& image, const ToneCurve& curve) {
     std::vector<std::array<std::uint8_t, 3>> pixels;
     pixels.reserve(image.xyz.size());
     for (const auto& [x, y, z] : image.xyz) {
@@ -98,6 +97,10 @@ std::vector<std::array<std::uint8_t, 3>> display_image(const XyzImage& image, co
         pixels.push_back(pixel);
     }
     return pixels;
+}
+
+std::vector<std::array<std::uint8_t, 3>> display_image(const XyzImage& image, const ToneMapping& mapping) {
+    return display_image(image, ToneCurve(image, mapping));
 }
 
 } // namespace tristim

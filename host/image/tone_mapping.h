@@ -56,6 +56,7 @@ class ToneCurve {
 double srgb_encode(double linear);
 
 /// The image's region in 8-bit sRGB, rows from the top.
+std::vector<std::array<std::uint8_t, 3>> display_image(const XyzImage& image, const ToneCurve& curve);
 std::vector<std::array<std::uint8_t, 3>> display_image(const XyzImage& image, const ToneMapping& mapping);
 
 } // namespace tristim

@@ -68,27 +68,47 @@ void check_writable(const std::string& path) {
     check_output_file(path);
 }
 
-void write_exr(const std::string& path, const XyzImage& image, ColourSpace space, const ImageMetadata& metadata) {
-    OIIO::ImageSpec spec(image.region.width, image.region.height, 3, OIIO::TypeDesc::FLOAT);
+void write_exr(const std::string& path, const XyzImage& image, ColourSpace space, const ImageMetadata& metadata,
+               const ImageLayers& layers) {
+    const std::size_t channels = 3 * (1 + layers.size());
+    OIIO::ImageSpec spec(image.region.width, image.region.height, static_cast<int>(channels), OIIO::TypeDesc::FLOAT);
     spec.x = image.region.x;
     spec.y = image.region.y;
     spec.full_width = image.full_width;
     spec.full_height = image.full_height;
     spec.attribute("compression", "zip");
-    if (space == ColourSpace::Srgb)
+    if (space == ColourSpace::Srgb) {
         spec.attribute("oiio:ColorSpace", "Linear");
-    else
+        spec.channelnames = {"R", "G", "B"};
+    } else {
         spec.channelnames = {"X", "Y", "Z"};
+    }
+    for (const auto& [name, values] : layers)
+        spec.channelnames.insert(spec.channelnames.end(), {name + ".X", name + ".Y", name + ".Z"});
     for (const auto& [name, value] : metadata)
         std::visit([&](const auto& v) { set_attribute(spec, "tristim:" + name, v); }, value);
-    const auto pixels = space == ColourSpace::Srgb ? linear_rgb(image) : image.xyz;
+    const auto colours = space == ColourSpace::Srgb ? linear_rgb(image) : image.xyz;
+    std::vector<float> pixels;
+    pixels.reserve(colours.size() * channels);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        pixels.insert(pixels.end(), colours[i].begin(), colours[i].end());
+        for (const auto& [name, values] : layers)
+            pixels.insert(pixels.end(), values[i].begin(), values[i].end());
+    }
     replace_file(path, encode("exr", spec, OIIO::TypeDesc::FLOAT, pixels.data()));
 }
 
 void write_png(const std::string& path, const XyzImage& image, const ToneMapping& tone_mapping) {
-    OIIO::ImageSpec spec(image.region.width, image.region.height, 3, OIIO::TypeDesc::UINT8);
+    write_png(path, image, ToneCurve(image, tone_mapping));
+}
+
+void write_png(const std::string& path, const XyzImage& image, const ToneCurve& curve) {
+    write_png(path, image.region.width, image.region.height, display_image(image, curve));
+}
+
+void write_png(const std::string& path, int width, int height, std::span<const std::array<std::uint8_t, 3>> pixels) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    const std::vector<std::array<std::uint8_t, 3>> pixels = display_image(image, tone_mapping);
     replace_file(path, encode("png", spec, OIIO::TypeDesc::UINT8, pixels.data()));
 }
 

@@ -1,10 +1,10 @@
 #include "meshes/mesh_io.h"
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "meshes/mesh_checks.h"
 #include "meshes/mesh_importer.h"
 #include "meshes/ply_header.h"
-#include "meshes/read_file.h"
 #include "meshes/triangulate.h"
 
 // MeshIO.hh makes the linker keep OpenMesh's readers, which register themselves.

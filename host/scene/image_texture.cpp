@@ -1,6 +1,6 @@
 #include "scene/image_texture.h"
 
-#include "meshes/read_file.h"
+#include "base/read_file.h"
 
 #include <OpenImageIO/imageio.h>
 

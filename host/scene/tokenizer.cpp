@@ -1,6 +1,6 @@
 #include "scene/tokenizer.h"
 
-#include "meshes/read_file.h"
+#include "base/read_file.h"
 
 namespace tristim {
 

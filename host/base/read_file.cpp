@@ -1,4 +1,4 @@
-#include "meshes/read_file.h"
+#include "base/read_file.h"
 
 #include "base/error.h"
 
