@@ -54,13 +54,13 @@ inline void limit(int resource, const std::optional<rlim_t>& value) {
 
 } // namespace child_detail
 
-/// Runs the built tristim command with arguments and extra environment variables, and waits for its end.
-inline ChildResult run_tristim(const std::vector<std::string>& arguments,
+/// Runs a program, given by its path, with arguments and extra environment variables, and waits for its end.
+inline ChildResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                                const std::map<std::string, std::string>& environment = {},
                                const ChildLimits& limits = {}) {
     std::FILE* out = std::tmpfile();
     std::FILE* err = std::tmpfile();
-    std::vector<std::string> words{TRISTIM_COMMAND};
+    std::vector<std::string> words{program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words)
@@ -76,7 +76,7 @@ inline ChildResult run_tristim(const std::vector<std::string>& arguments,
             std::signal(SIGXFSZ, SIG_IGN); // ignored signals stay so in the new program
         child_detail::limit(RLIMIT_FSIZE, limits.file_size);
         child_detail::limit(RLIMIT_AS, limits.memory);
-        ::execv(TRISTIM_COMMAND, argv.data());
+        ::execv(program.c_str(), argv.data());
         std::_Exit(127);
     }
     int status = 0;
@@ -97,6 +97,13 @@ inline ChildResult run_tristim(const std::vector<std::string>& arguments,
     std::fclose(out);
     std::fclose(err);
     return result;
+}
+
+/// The same with the built tristim command.
+inline ChildResult run_tristim(const std::vector<std::string>& arguments,
+                               const std::map<std::string, std::string>& environment = {},
+                               const ChildLimits& limits = {}) {
+    return run_program(TRISTIM_COMMAND, arguments, environment, limits);
 }
 
 } // namespace tristim::test

@@ -1,12 +1,17 @@
-# Writes OUTPUT, a C++ file that holds every kernel source, every spectral table and the plotting script as text.
+# Writes OUTPUT, a C++ file that holds the Chart.js library (file CHART_JS) and, from the folder ROOT, every kernel source, every spectral table, the plotting scripts and what reports consist of as text.
 file(GLOB FILES RELATIVE ${ROOT} ${ROOT}/kernels/*.cl ${ROOT}/kernels/*.h ${ROOT}/host/spectra/data/*.spd
-     ${ROOT}/host/plot/*.py)
+     ${ROOT}/host/plot/*.py ${ROOT}/host/report/*.html ${ROOT}/host/report/*.css ${ROOT}/host/report/*.js)
 list(SORT FILES)
+list(APPEND FILES chart.min.js)
 set(TEXT "#include \"base/embedded_files.h\"\n\nnamespace tristim {\n\n")
 string(APPEND TEXT "const std::map<std::string, std::string_view>& embedded_files() {\n")
 string(APPEND TEXT "    static const std::map<std::string, std::string_view> files{\n")
 foreach(FILE_PATH ${FILES})
-  file(READ ${ROOT}/${FILE_PATH} CONTENT)
+  if(FILE_PATH STREQUAL "chart.min.js")
+    file(READ ${CHART_JS} CONTENT)
+  else()
+    file(READ ${ROOT}/${FILE_PATH} CONTENT)
+  endif()
   # Compilers limit a string literal to 64 KiB: cut long files into adjacent literals.
   string(LENGTH "${CONTENT}" LENGTH)
   string(APPEND TEXT "        {\"${FILE_PATH}\",\n")

@@ -6,8 +6,9 @@
 
 namespace tristim {
 
-/// The kernel sources ("kernels/eye_pass.cl"), spectral tables ("host/spectra/data/glass-BK7.spd") and the plotting
-/// script ("host/plot/plot.py") that the build put into the binary, by their path in the repository.
+/// The kernel sources ("kernels/eye_pass.cl"), spectral tables ("host/spectra/data/glass-BK7.spd"), plotting scripts
+/// ("host/plot/plot.py") and parts of reports ("host/report/report.js") that the build put into the binary, by their
+/// path in the repository; and the Chart.js library as "chart.min.js".
 const std::map<std::string, std::string_view>& embedded_files();
 
 } // namespace tristim

@@ -25,9 +25,8 @@ struct Plot {
 /// Throws Error unless the name ends in ".png" and a file can be written there.
 void check_plot_file(const std::string& png_path);
 
-/// Draws the plot to a PNG file, which is replaced as a whole or not at all. Python with matplotlib draws: the program
-/// that TRISTIM_PYTHON in the environment names, else `python3`, else Debian's own /usr/bin/python3. Throws Error if
-/// none of them has matplotlib (naming Debian's package), if the drawing fails, or if the file cannot be written.
+/// Draws the plot to a PNG file, which is replaced as a whole or not at all. Python with matplotlib draws
+/// (plot/python.h). Throws Error if there is none, if the drawing fails, or if the file cannot be written.
 void write_plot(const Plot& plot, const std::string& png_path);
 
 } // namespace tristim

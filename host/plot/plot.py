@@ -1,41 +1,10 @@
-"""Draws a plot: JSON as host/plot/plot.cpp writes it on standard input, PNG on standard output."""
+"""Draws a plot: JSON as host/plot/plot.cpp writes it on standard input, PNG on standard output.
 
-import sys
+Runs behind host/plot/style.py, whose names it uses.
+"""
 
-NO_MATPLOTLIB = 3  # exit status, read by host/plot/plot.cpp
-
-# Python looks into the current folder first when a program comes by -c: a stray file there must not stand in for a module.
-sys.path = [folder for folder in sys.path if folder]
-
-import json
-import math
-
-try:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-    from matplotlib import rc_context
-except ImportError:
-    sys.exit(NO_MATPLOTLIB)
-
-# Okabe & Ito 2008, "Color Universal Design": told apart by colour-blind readers.
-COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#f0e442"]
-DASHES = ["-", "--", "-.", ":"]
-STYLE = {
-    "font.size": 11,
-    "axes.titlesize": 13,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#dddddd",
-    "text.parse_math": False,  # a dollar sign in a label is a dollar sign
-}
 FEWEST_MARKED = 30  # a curve of fewer samples shows them
 MOST_IN_LEGEND_COLUMN = 6
-
-
-def numbers(values):
-    return [math.nan if value is None else value for value in values]
 
 
 def draw_curves(axes, plot):
@@ -43,8 +12,8 @@ def draw_curves(axes, plot):
         axes.plot(
             numbers(series["x"]),
             numbers(series["y"]),
-            color=COLOURS[i % len(COLOURS)],
-            linestyle=DASHES[i // len(COLOURS) % len(DASHES)],
+            color=colour(i),
+            linestyle=dash(i),
             linewidth=1.8,
             marker="o" if len(series["x"]) < FEWEST_MARKED else None,
             markersize=4,
