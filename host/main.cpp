@@ -1,23 +1,44 @@
 #include "base/error.h"
+#include "commands/bench.h"
 #include "commands/bench_film.h"
 #include "commands/bench_pass.h"
 #include "commands/bench_rays.h"
 #include "commands/compare.h"
 #include "commands/devices.h"
 #include "commands/film.h"
+#include "commands/reference.h"
 #include "commands/render.h"
+#include "commands/report.h"
 #include "commands/spectra.h"
 #include "opencl/errors.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
+#include <span>
+#include <string>
 
 namespace {
 
 constexpr int exit_failure = 1;
 constexpr int exit_usage = 2;
+
+/// What was typed, for a shell to repeat.
+std::string command_line(int argc, char** argv) {
+    std::string line = "tristim";
+    for (const std::string word : std::span(argv + 1, argv + std::max(argc, 1))) {
+        const bool plain =
+            !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                    "0123456789_-+=:,./@%") == std::string::npos;
+        std::string quoted = word;
+        for (std::size_t at = 0; (at = quoted.find('\'', at)) != std::string::npos; at += 4)
+            quoted.replace(at, 1, "'\\''");
+        line += plain ? " " + word : " '" + quoted + "'";
+    }
+    return line;
+}
 
 int run(int argc, char** argv) {
     CLI::App app{"tristim: a spectral photon mapper on OpenCL"};
@@ -26,15 +47,20 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.get_formatter()->column_width(36);
     tristim::add_render_command(app);
+    tristim::add_reference_command(app);
     tristim::add_devices_command(app);
     tristim::add_compare_command(app);
     tristim::add_film_command(app);
     tristim::add_spectra_command(app);
+    tristim::add_bench_command(app, command_line(argc, argv));
+    tristim::add_report_command(app);
     tristim::add_bench_rays_command(app);
     tristim::add_bench_pass_command(app);
     tristim::add_bench_film_command(app);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::RuntimeError& error) {
+        return error.get_exit_code(); // a command's own
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0)
             return app.exit(error); // --help, --version

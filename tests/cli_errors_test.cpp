@@ -106,6 +106,8 @@ TEST_F(CliErrors, BadValuesOfEveryOption) {
         {"--photons", "many", "many"},
         {"--resolution", "0x0", "0x0"},
         {"--resolution", "640", "640"},
+        {"--resolution", "0%", "0%"},
+        {"--resolution", "50%x", "50%x"},
         {"--resolution", "-4x4", "-4x4"},
         {"--resolution", "4x4x4", "4x4x4"},
         {"--resolution", "100000x4", "100000x4"},

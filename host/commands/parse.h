@@ -5,7 +5,8 @@
 
 namespace tristim {
 
-/// "WxH" with positive integers. Throws Error otherwise.
-std::array<int, 2> parse_resolution(const std::string& text);
+/// "WxH" with positive integers, or "P%" of `own` with a positive number, rounded to at least one pixel. Throws Error
+/// otherwise.
+std::array<int, 2> parse_resolution(const std::string& text, const std::array<int, 2>& own);
 
 } // namespace tristim

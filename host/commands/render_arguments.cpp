@@ -39,7 +39,8 @@ void add_render_settings(CLI::App& command, RenderArguments& a) {
         ->check(CLI::IsMember({"stratified", "random"}))
         ->capture_default_str();
     command.add_option("--photons", a.photons, "Photon paths per pass [scene, else 65536]")->type_name("PER_PASS");
-    command.add_option("--resolution", a.resolution, "Image size in pixels [scene]")->type_name("WxH");
+    command.add_option("--resolution", a.resolution, "Image size in pixels, or as a share of the scene's [scene]")
+        ->type_name("WxH|P%");
     command.add_option("--region", a.region, "Render only pixels X0 <= x < X1, Y0 <= y < Y1 [all]")
         ->type_name("X0,Y0,X1,Y1");
     command.add_option("--seed", a.seed, "Seed of all random numbers [scene, else 0]");
@@ -77,7 +78,7 @@ RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
     options.method = parse_method(a.method);
     options.random_sequence = a.sequence == "random";
     if (!a.resolution.empty()) {
-        const auto [width, height] = parse_resolution(a.resolution);
+        const auto [width, height] = parse_resolution(a.resolution, {options.width, options.height});
         options.width = width;
         options.height = height;
         options.region = {0, 0, width, height};

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tristim {
+
+/// Registers `tristim report`.
+void add_report_command(CLI::App& app);
+
+} // namespace tristim
