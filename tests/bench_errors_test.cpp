@@ -162,10 +162,11 @@ TEST_F(BenchErrors, BadReferences) {
     write_reference(folder.path("nan.exr"), with_nan, {});
     refused(folder.path("nan.exr"), "nan.exr");
 
-    expect_bench_failure({"--reference", good, "--reference", good}, "there are 1 scenes but 2 --reference");
+    expect_bench_failure({"--reference", good, "--reference", good},
+                         "the number of scenes is 1 but that of --reference 2");
     std::filesystem::create_directory(folder.path("other"));
     const std::string second = folder.write("other/scene.pbrt", tiny_scene());
-    expect_bench_failure({second, "--reference", good}, "there are 2 scenes but 1 --reference");
+    expect_bench_failure({second, "--reference", good}, "the number of scenes is 2 but that of --reference 1");
     // Each is read before anything is rendered.
     expect_bench_failure({second, "--reference", good, "--reference", folder.path("none.exr")}, "none.exr");
 }

@@ -41,7 +41,8 @@ nlohmann::json read_json(const std::string& path) {
 }
 
 TEST_F(CliRender, HelpOfEveryCommandExitsWithZero) {
-    for (const char* command : {"render", "devices", "compare", "bench-rays", "bench-pass"}) {
+    for (const char* command :
+         {"render", "reference", "bench", "report", "devices", "compare", "bench-rays", "bench-pass"}) {
         const ChildResult help = run_tristim({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_NE(help.standard_output.find(std::string("tristim ") + command), std::string::npos)
@@ -50,21 +51,30 @@ TEST_F(CliRender, HelpOfEveryCommandExitsWithZero) {
     }
     const ChildResult all = run_tristim({"--help"});
     EXPECT_EQ(all.exit_code, 0);
-    for (const char* command : {"render", "devices", "compare", "bench-rays", "bench-pass"})
+    for (const char* command :
+         {"render", "reference", "bench", "report", "devices", "compare", "bench-rays", "bench-pass"})
         EXPECT_NE(all.standard_output.find(command), std::string::npos) << command;
     EXPECT_EQ(run_tristim({"--version"}).standard_output, TRISTIM_VERSION "\n");
 }
 
 TEST_F(CliRender, HelpNamesEveryOptionAndDefaults) {
     const std::string help = run_tristim({"render", "--help"}).standard_output;
-    for (const char* words : {"--outfile",      "--method",  "tristimulus:1", "--sequence",       "stratified",
-                              "--passes",       "64",        "--time",        "--photons",        "65536",
-                              "--resolution",   "--region",  "--seed",        "--device",         "--direct",
-                              "=sample",        "--radius",  "=global",       "--initial-radius", "auto",
-                              "--max-depth",    "16",        "--math",        "=precise",         "--space",
-                              "=srgb",          "--tonemap", "=photographic", "--exposure",       "--stats",
-                              "--dump-kernels", "--quiet"})
+    for (const char* words : {"--outfile",      "--method",  "tristimulus:1",   "--sequence",       "stratified",
+                              "--passes",       "64",        "--time",          "--photons",        "65536",
+                              "--resolution",   "--region",  "--seed",          "--device",         "--direct",
+                              "=sample",        "--radius",  "=global",         "--initial-radius", "auto",
+                              "--max-depth",    "16",        "--math",          "=precise",         "--space",
+                              "=srgb",          "--tonemap", "=photographic",   "--exposure",       "--stats",
+                              "--dump-kernels", "--quiet",   "--radius-factor", "--alpha"})
         EXPECT_NE(help.find(words), std::string::npos) << words << " is not in\n" << help;
+}
+
+TEST_F(CliRender, ResolutionMayBeAShareOfTheScenes) {
+    const std::string path = folder.path("a.exr");
+    ASSERT_EQ(render({"--passes=1", "--resolution=50%", "--outfile", path}).exit_code, 0);
+    const XyzImage image = read_exr(path);
+    EXPECT_EQ(image.full_width, 8);
+    EXPECT_EQ(image.full_height, 4);
 }
 
 TEST_F(CliRender, DevicesListsTheOneThatRuns) {

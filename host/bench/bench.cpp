@@ -2,11 +2,11 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "bench/comparisons.h"
 #include "bench/machine.h"
 #include "bench/race.h"
 #include "bench/reference.h"
-#include "image/compare_images.h"
-#include "image/error_map.h"
+#include "bench/resume.h"
 #include "image/output_file.h"
 #include "image/write_image.h"
 
@@ -20,7 +20,6 @@ constexpr double seconds_between_saves = 30.0;
 /// The longest that a method renders before the next one has its turn.
 constexpr double longest_slice = 0.5; // seconds
 constexpr double slices_per_race = 40.0;
-constexpr std::uint32_t math_passes = 16;
 
 void make_folder(const std::string& path) {
     std::error_code error;
@@ -34,17 +33,6 @@ bool has_checkpoints(const SceneResults& scene) {
         return std::any_of(run.repeats.begin(), run.repeats.end(),
                            [](const Repeat& repeat) { return !repeat.checkpoints.empty(); });
     });
-}
-
-/// Seconds of a pass, over all repeats.
-double pass_seconds(const Run& run) {
-    double seconds = 0.0;
-    double passes = 0.0;
-    for (const Repeat& repeat : run.repeats) {
-        seconds += repeat.checkpoints.back().seconds;
-        passes += static_cast<double>(repeat.checkpoints.back().passes);
-    }
-    return seconds / passes;
 }
 
 class Bench {
@@ -69,11 +57,6 @@ class Bench {
     std::string state_path(const PlannedScene& planned, const Run& run, std::size_t repeat) const {
         return path(fmt::format("state/{}-{}-{}.cbor", planned.results.name, run.id, repeat));
     }
-    /// As given, or relative to the folder.
-    std::string reference_name(const PlannedScene& planned) const {
-        return planned.given_reference.empty() ? "reference-" + planned.results.name + ".exr" : planned.given_reference;
-    }
-
     /// Seconds of rendering that a race takes.
     double race_seconds(const PlannedScene& planned) const {
         return plan_.results.seconds * static_cast<double>(planned.results.runs.size());
@@ -91,13 +74,10 @@ class Bench {
     void check_seeds(const std::string& reference, std::uint32_t reference_seed) const;
     void prepare_folder(bool resume);
     void remove_states() const;
-    void take_over(const BenchResults& earlier, const std::string& source);
     void save();
     bool measure_scene(PlannedScene& planned);
     Reference obtain_reference(PlannedScene& planned, bool& stopped);
     bool run_repeat(PlannedScene& planned, const XyzImage& reference, std::size_t repeat);
-    void write_images(PlannedScene& planned, const std::vector<Contestant>& contestants, const XyzImage& reference);
-    void compare_math(PlannedScene& planned);
 
     BenchPlan& plan_;
     const BenchCallback& callback_;
@@ -132,7 +112,7 @@ void Bench::prepare_folder(bool resume) {
     if (exists && !resume)
         fail("\"{}\" holds a bench: go on with it by --resume, or give another folder", plan_.folder);
     if (exists)
-        take_over(read_results(results), results);
+        take_over(plan_, read_results(results), results);
     else
         remove_states(); // of a bench whose results are gone
     make_folder(path("images"));
@@ -150,48 +130,9 @@ void Bench::remove_states() const {
     std::filesystem::remove(path("state"), ignored); // if it is empty
 }
 
-/// Takes over what an earlier run measured. Throws Error unless it had the same plan.
-void Bench::take_over(const BenchResults& earlier, const std::string& source) {
-    const auto require = [&](bool same, const std::string& what) {
-        if (!same)
-            fail("cannot go on with \"{}\": it is a bench with other {}", source, what);
-    };
-    const BenchResults& wanted = plan_.results;
-    require(earlier.kind == wanted.kind, "aims (--costs)");
-    require(earlier.version == wanted.version, "kernels: version " + earlier.version);
-    require(earlier.seconds == wanted.seconds, fmt::format("--time: {}", earlier.seconds));
-    require(earlier.repeats == wanted.repeats, fmt::format("--repeats: {}", earlier.repeats));
-    require(earlier.seed == wanted.seed, fmt::format("--seed: {}", earlier.seed));
-    require(earlier.devices == wanted.devices, "devices or drivers");
-    require(earlier.scenes.size() == plan_.scenes.size(), "scenes");
-    for (std::size_t s = 0; s < earlier.scenes.size(); ++s) {
-        const SceneResults& from = earlier.scenes[s];
-        SceneResults& to = plan_.scenes[s].results;
-        require(from.name == to.name && from.runs.size() == to.runs.size() && from.groups.size() == to.groups.size(),
-                "scenes or methods");
-        require(from.width == to.width && from.height == to.height, "--resolution");
-        require(from.regions == to.regions, "regions");
-        require(from.reference.passes == 0 || from.reference.file == reference_name(plan_.scenes[s]),
-                "--reference: " + from.reference.file);
-        require(from.reference.passes == 0 || !plan_.scenes[s].given_reference.empty() ||
-                    from.reference.method == plan_.scenes[s].reference_options.method.name(),
-                "--reference-method: " + from.reference.method);
-        for (std::size_t r = 0; r < to.runs.size(); ++r)
-            require(from.runs[r].options == to.runs[r].options && from.runs[r].id == to.runs[r].id,
-                    "methods or options");
-        to.runs = from.runs;
-        to.reference = from.reference;
-        to.image = from.image;
-        to.error_map_scale = from.error_map_scale;
-        for (std::size_t g = 0; g < to.groups.size(); ++g)
-            to.groups[g].notes = from.groups[g].notes;
-    }
-    plan_.results.started = earlier.started;
-}
-
 void Bench::save() {
     BenchResults results = plan_.results;
-    results.peak_process_memory = peak_process_memory();
+    results.peak_process_memory = std::max(results.peak_process_memory, peak_process_memory());
     for (const PlannedScene& planned : plan_.scenes)
         results.scenes.push_back(planned.results);
     replace_file(path("results.json"), to_json(results).dump(1) + "\n");
@@ -244,7 +185,7 @@ bool Bench::measure_scene(PlannedScene& planned) {
         done_ += race_seconds(planned);
     }
     if (!stopped)
-        compare_math(planned);
+        compare_math(planned, plan_.devices, plan_.results.seed);
     return !stopped;
 }
 
@@ -291,59 +232,16 @@ bool Bench::run_repeat(PlannedScene& planned, const XyzImage& reference, std::si
                  return !stopped;
              });
     keep();
-    if (repeat == 0)
-        write_images(planned, contestants, reference);
+    const bool all_began = std::all_of(contestants.begin(), contestants.end(),
+                                       [](const Contestant& contestant) { return contestant.seconds() > 0.0; });
+    if (repeat == 0 && all_began)
+        write_images(planned.results, contestants, reference, plan_.folder);
     save();
     if (stopped)
         save_states();
     for (std::size_t i = 0; !stopped && i < runs.size(); ++i)
         std::filesystem::remove(state_path(planned, runs[i], repeat));
     return !stopped;
-}
-
-/// Each method's image as it stands, in the reference's tones, and its error map.
-void Bench::write_images(PlannedScene& planned, const std::vector<Contestant>& contestants, const XyzImage& reference) {
-    std::vector<XyzImage> images;
-    std::vector<std::vector<float>> errors;
-    for (const Contestant& contestant : contestants) {
-        images.push_back(contestant.image());
-        errors.push_back(pixel_errors(images.back(), reference));
-    }
-    planned.results.error_map_scale = error_map_scale(errors);
-    const ToneCurve curve(reference, {});
-    for (std::size_t i = 0; i < images.size(); ++i) {
-        Run& run = planned.results.runs[i];
-        const std::string name = "images/" + planned.results.name + "-" + run.id;
-        run.image = name + ".png";
-        run.error_map = name + "-error.png";
-        write_png(path(run.image), images[i], curve);
-        write_error_map(path(run.error_map), images[i], reference, planned.results.error_map_scale);
-    }
-}
-
-/// What fast arithmetic changes, free of noise: the same passes of both; and the time it saves.
-void Bench::compare_math(PlannedScene& planned) {
-    const auto group = std::find_if(planned.results.groups.begin(), planned.results.groups.end(),
-                                    [](const RunGroup& g) { return g.name == "math"; });
-    if (group == planned.results.groups.end() || !group->notes.empty())
-        return;
-    const std::size_t precise = group->runs[0];
-    const std::size_t fast = group->runs[1];
-    std::vector<XyzImage> images;
-    for (const std::size_t run : {precise, fast}) {
-        RenderOptions options = planned.options[run];
-        options.seed = plan_.results.seed;
-        Renderer renderer(planned.scene, options, plan_.devices[planned.results.runs[run].device]);
-        for (std::uint32_t pass = 0; pass < math_passes; ++pass)
-            renderer.render_pass(pass);
-        FilmImage film = renderer.film();
-        images.push_back({film.full_width, film.full_height, film.region, std::move(film.xyz)});
-    }
-    group->notes.push_back(
-        fmt::format("After the same {} passes the image of fast math differs from that of precise "
-                    "math by an RMSE of {:.2g}; a pass of fast math takes {:.2f} times as long.",
-                    math_passes, compare_images(images[1], images[0]).rmse,
-                    pass_seconds(planned.results.runs[fast]) / pass_seconds(planned.results.runs[precise])));
 }
 
 } // namespace

@@ -60,6 +60,10 @@ std::size_t find_run(PlannedScene& planned, const Variant& variant, const std::v
 
 } // namespace
 
+std::string reference_name(const PlannedScene& planned) {
+    return planned.given_reference.empty() ? "reference-" + planned.results.name + ".exr" : planned.given_reference;
+}
+
 PlannedScene plan_scene(Scene scene, const std::string& file, const std::vector<VariantGroup>& groups,
                         const std::vector<Device>& devices, std::vector<NamedRegion> regions) {
     PlannedScene planned;

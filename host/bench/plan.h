@@ -27,6 +27,9 @@ struct BenchPlan {
     double reference_seconds = 0.0;
 };
 
+/// The file of a scene's reference: as given, or relative to the folder if the bench renders it.
+std::string reference_name(const PlannedScene& planned);
+
 /// A scene with its variants on every device as runs and groups; equal variants of several groups are one run. Scene
 /// names come from file names: that of the folder if the file is called scene.pbrt, else folder and file: "dispersion",
 /// "interference-areas-a".

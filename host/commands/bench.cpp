@@ -51,8 +51,8 @@ void check(const BenchCommand& command) {
     if (command.repeats < 1 || command.repeats > most_repeats)
         fail("{} repeats is not between 1 and {}", command.repeats, most_repeats);
     if (!command.references.empty() && command.references.size() != command.scenes.size())
-        fail("there are {} scenes but {} --reference: each scene takes one, in the same order", command.scenes.size(),
-             command.references.size());
+        fail("the number of scenes is {} but that of --reference {}: each scene takes one, in the same order",
+             command.scenes.size(), command.references.size());
 }
 
 /// What a bench of this scene renders, devices aside; throws before anything is rendered or built.
