@@ -1,6 +1,7 @@
 #include "bench/reference_file.h"
 
 #include "base/error.h"
+#include "bench/variants.h"
 #include "image/read_image.h"
 
 #include <algorithm>
@@ -93,14 +94,17 @@ class Fields {
 } // namespace
 
 std::vector<std::pair<std::string, std::string>> reference_settings(const RenderOptions& options) {
-    return {{"sequence", options.random_sequence ? "random" : "stratified"},
-            {"photons_per_pass", fmt::format("{}", options.photons_per_pass)},
-            {"initial_radius", options.radius ? fmt::format("{}", *options.radius) : "auto"},
-            {"radius_factor", fmt::format("{}", options.radius_factor)},
-            {"alpha", fmt::format("{}", options.alpha)},
-            {"direct", options.direct_photons ? "photons" : "sample"},
-            {"photon_roughness", fmt::format("{}", options.photon_roughness)},
-            {"math", options.fast_math ? "fast" : "precise"}};
+    std::vector<std::pair<std::string, std::string>> settings;
+    const nlohmann::ordered_json json = options_json(options);
+    for (const auto& [name, value] : json.items()) {
+        // These stand by themselves, and a reference has the global radius.
+        if (name == "method" || name == "max_depth" || name == "radius")
+            continue;
+        settings.emplace_back(name, value.is_string()         ? value.get<std::string>()
+                                    : value.is_number_float() ? fmt::format("{}", value.get<double>())
+                                                              : value.dump());
+    }
+    return settings;
 }
 
 void write_reference(const std::string& path, const Reference& reference, ImageMetadata metadata) {
