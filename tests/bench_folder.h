@@ -28,11 +28,6 @@ inline std::string tiny_scene(const std::string& reflectance = "0.7 0.3 0.1", in
            "Shape \"bilinearmesh\" \"point3 P\" [ -20 -20 5  20 -20 5  -20 20 5  20 20 5 ]\n";
 }
 
-inline std::string read_text(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 inline nlohmann::ordered_json read_json(const std::string& path) {
     return nlohmann::ordered_json::parse(read_text(path));
 }

@@ -15,11 +15,6 @@ constexpr const char* small_scene = "Camera \"perspective\"\n"
                                     "Material \"diffuse\"\n"
                                     "Shape \"bilinearmesh\" \"point3 P\" [ -9 -9 5  9 -9 5  -9 9 5  9 9 5 ]\n";
 
-std::string read_text(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// A folder with a scene and an image that was there before.
 class CliErrors : public testing::Test {
   protected:

@@ -60,7 +60,7 @@ TEST(PbrtReference, DispersionImageAgreesInBlockMeans) {
     for (std::uint32_t pass = 0; pass < passes; ++pass)
         renderer.render_pass(pass);
     const FilmImage film = renderer.film();
-    const XyzImage image{film.full_width, film.full_height, film.region, film.xyz};
+    const XyzImage image = xyz_image(film);
     ASSERT_EQ(reference.xyz.size(), image.xyz.size());
 
     // Normal deviates beyond this have probability 0.01 in all 3,072 together (Šidák).

@@ -13,11 +13,6 @@
 namespace tristim::test {
 namespace {
 
-std::string read_text(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::size_t files_in(const SceneFolder& folder) {
     const auto files = std::filesystem::directory_iterator(folder.path(""));
     return static_cast<std::size_t>(std::distance(begin(files), end(files)));

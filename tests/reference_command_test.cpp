@@ -21,11 +21,6 @@ constexpr const char* small_scene =
     "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.3 0.1 ]\n"
     "Shape \"bilinearmesh\" \"point3 P\" [ -20 -20 5  20 -20 5  -20 20 5  20 20 5 ]\n";
 
-std::string read_text(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class ReferenceCommand : public testing::Test {
   protected:
     ReferenceCommand() : scene(folder.write("scene.pbrt", small_scene)), out(folder.path("r.exr")) {}

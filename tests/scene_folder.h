@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 namespace tristim::test {
@@ -39,6 +40,12 @@ class SceneFolder {
   private:
     std::filesystem::path folder_;
 };
+
+/// The bytes of a file; none if it cannot be read.
+inline std::string read_text(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
 /// The message of the Error that a call throws; fails the test if it throws none.
 template <typename Function>

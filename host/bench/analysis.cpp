@@ -202,7 +202,7 @@ std::optional<double> time_to_halve(std::optional<double> slope) {
 std::optional<double> near_floor_from(const Curve& curve, const ReferenceSummary& reference, std::size_t region) {
     if (region >= reference.floor.size() || !(reference.floor[region] > 0.0))
         return std::nullopt;
-    return time_to_reach(curve, 3.0 * reference.floor[region]);
+    return time_to_reach(curve, near_floor_factor * reference.floor[region]);
 }
 
 nlohmann::ordered_json summarise(const SceneResults& scene) {

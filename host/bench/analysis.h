@@ -37,6 +37,9 @@ std::optional<double> fitted_slope(const Curve& curve);
 /// is beyond all numbers.
 std::optional<double> time_to_halve(std::optional<double> slope);
 
+/// Errors below this many times the reference's floor have a visible part of the reference's own error in them.
+inline constexpr double near_floor_factor = 3.0;
+
 /// From when on the median is below three times the reference's floor in this region, in seconds: there the
 /// reference's own error has a visible part in it.
 std::optional<double> near_floor_from(const Curve& curve, const ReferenceSummary& reference, std::size_t region);

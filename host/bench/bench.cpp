@@ -21,13 +21,6 @@ constexpr double seconds_between_saves = 30.0;
 constexpr double longest_slice = 0.5; // seconds
 constexpr double slices_per_race = 40.0;
 
-void make_folder(const std::string& path) {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
-    if (error)
-        fail("cannot make the folder \"{}\": {}", path, error.message());
-}
-
 bool has_checkpoints(const SceneResults& scene) {
     return std::any_of(scene.runs.begin(), scene.runs.end(), [](const Run& run) {
         return std::any_of(run.repeats.begin(), run.repeats.end(),

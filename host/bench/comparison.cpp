@@ -1,29 +1,14 @@
 #include "bench/comparison.h"
 
+#include "base/round_numbers.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace tristim {
 namespace {
 
 constexpr std::size_t most_levels = 6;
-
-/// Number k of the series …, 0.5, 1 (k = 0), 2, 5, 10, …
-double level(int k) {
-    const int exponent = static_cast<int>(std::floor(k / 3.0));
-    const double mantissa = std::array{1.0, 2.0, 5.0}[static_cast<std::size_t>(k - 3 * exponent)];
-    // Powers of ten up to 22 are exact and division rounds right, so that 0.002 prints as such.
-    return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
-}
-
-/// The first number of the series at or above a positive value.
-int level_above(double value) {
-    int k = 3 * static_cast<int>(std::floor(std::log10(value))) - 1;
-    while (level(k) < value)
-        ++k;
-    return k;
-}
 
 } // namespace
 
@@ -40,15 +25,15 @@ std::vector<double> error_levels(const std::vector<Curve>& curves, double floor)
     if (lasts.empty())
         return {};
     std::sort(lasts.begin(), lasts.end());
-    const int bottom = level_above(std::max(lasts.front(), floor));
-    int top = std::max(bottom, level_above(lasts[lasts.size() / 2]));
-    while (top - bottom + 1 < static_cast<int>(most_levels) && level(top + 1) < greatest_first)
+    const int bottom = round_number_above(std::max(lasts.front(), floor));
+    int top = std::max(bottom, round_number_above(lasts[lasts.size() / 2]));
+    while (top - bottom + 1 < static_cast<int>(most_levels) && round_number(top + 1) < greatest_first)
         ++top;
     const auto count = std::min(static_cast<std::size_t>(top - bottom + 1), most_levels);
-    std::vector<double> levels{level(top)};
+    std::vector<double> levels{round_number(top)};
     for (std::size_t i = 1; i < count; ++i) {
         const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-        levels.push_back(level(top - static_cast<int>(std::lround(share * (top - bottom)))));
+        levels.push_back(round_number(top - static_cast<int>(std::lround(share * (top - bottom)))));
     }
     return levels;
 }

@@ -61,8 +61,7 @@ void compare_math(PlannedScene& planned, const std::vector<Device>& devices, std
         Renderer renderer(planned.scene, options, devices[planned.results.runs[run].device]);
         for (std::uint32_t pass = 0; pass < math_passes; ++pass)
             renderer.render_pass(pass);
-        FilmImage film = renderer.film();
-        images.push_back({film.full_width, film.full_height, film.region, std::move(film.xyz)});
+        images.push_back(xyz_image(renderer.film()));
     }
     group->notes.push_back(
         fmt::format("After the same {} passes the image of fast math differs from that of precise "

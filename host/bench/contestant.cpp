@@ -77,11 +77,6 @@ MemoryUse Contestant::memory() const {
             statistics.bytes_per_pixel};
 }
 
-XyzImage Contestant::image() const {
-    FilmImage film = renderer_.film();
-    return {film.full_width, film.full_height, film.region, std::move(film.xyz)};
-}
-
 void Contestant::save(const std::string& path) const {
     const std::vector<FilmPixel> pixels = renderer_.film_pixels();
     std::vector<std::uint8_t> bytes(pixels.size() * sizeof(FilmPixel));

@@ -28,7 +28,7 @@ class Contestant {
     bool finished() const { return repeat_.finished; }
     const Repeat& repeat() const { return repeat_; }
     MemoryUse memory() const;
-    XyzImage image() const;
+    XyzImage image() const { return xyz_image(renderer_.film()); }
 
     /// Writes the state of the render. Throws Error.
     void save(const std::string& path) const;

@@ -252,7 +252,7 @@ class Paragraph {
             sentences_.push_back(fmt::format("{} is ahead {}.", who, readable_list(parts)));
     }
 
-    bool near_floor(std::size_t i) const { return all_.floor > 0.0 && error(i) <= 3.0 * all_.floor; }
+    bool near_floor(std::size_t i) const { return all_.floor > 0.0 && error(i) <= near_floor_factor * all_.floor; }
 
     bool stuck(std::size_t i) const {
         const Curve& curve = all_.curves[i];

@@ -1,6 +1,7 @@
 #include "bench/variants.h"
 
 #include "base/error.h"
+#include "base/split.h"
 
 #include <algorithm>
 #include <array>
@@ -8,16 +9,6 @@
 
 namespace tristim {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> words;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(separator, begin), text.size());
-        words.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return words;
-}
 
 VariantGroup wavelength_costs(const RenderOptions& base) {
     VariantGroup group{"wavelengths", "Wavelengths per path: N sets of three", {}, 0};
@@ -118,7 +109,7 @@ std::vector<VariantGroup> cost_variants(const RenderOptions& base) {
 
 nlohmann::ordered_json options_json(const RenderOptions& options) {
     nlohmann::ordered_json json{{"method", options.method.name()},
-                                {"sequence", options.random_sequence ? "random" : "stratified"},
+                                {"sequence", sequence_name(options)},
                                 {"photons_per_pass", options.photons_per_pass},
                                 {"max_depth", options.max_depth}};
     if (options.radius)

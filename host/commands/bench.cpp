@@ -6,12 +6,12 @@
 #include "bench/reference.h"
 #include "bench/regions.h"
 #include "commands/interrupt.h"
+#include "commands/parse.h"
 #include "commands/progress_bar.h"
 #include "commands/render_arguments.h"
 #include "report/report.h"
 
 #include <chrono>
-#include <cmath>
 #include <fmt/chrono.h>
 #include <memory>
 
@@ -41,13 +41,9 @@ struct BenchCommand {
 };
 
 void check(const BenchCommand& command) {
-    const auto require_time = [](double seconds, const char* option) {
-        if (!(seconds > 0.0 && std::isfinite(seconds)))
-            fail("{} must be a positive number of seconds", option);
-    };
-    require_time(command.seconds, "--time");
+    check_seconds(command.seconds, "--time");
     if (command.reference_seconds)
-        require_time(*command.reference_seconds, "--reference-time");
+        check_seconds(*command.reference_seconds, "--reference-time");
     if (command.repeats < 1 || command.repeats > most_repeats)
         fail("{} repeats is not between 1 and {}", command.repeats, most_repeats);
     if (!command.references.empty() && command.references.size() != command.scenes.size())
@@ -85,10 +81,8 @@ BenchPlan plan(const BenchCommand& command) {
         plan.scenes.push_back(tristim::plan(command, command.scenes[i], plan.devices));
         if (!command.references.empty())
             plan.scenes.back().given_reference = command.references[i];
-        if (!command.quiet) {
-            for (const std::string& note : plan.scenes.back().scene.notes)
-                fmt::print(stderr, "note: {}\n", note);
-        }
+        if (!command.quiet)
+            print_notes(plan.scenes.back().scene);
     }
     make_names_unique(plan.scenes);
     BenchResults& results = plan.results;

@@ -35,4 +35,9 @@ std::array<int, 2> parse_resolution(const std::string& text, const std::array<in
          text);
 }
 
+void check_seconds(double seconds, const std::string& option) {
+    if (!(seconds > 0.0 && std::isfinite(seconds)))
+        fail("{} must be a positive number of seconds", option);
+}
+
 } // namespace tristim

@@ -9,4 +9,7 @@ namespace tristim {
 /// otherwise.
 std::array<int, 2> parse_resolution(const std::string& text, const std::array<int, 2>& own);
 
+/// Throws Error, which names the option, unless it was given a positive, finite number of seconds.
+void check_seconds(double seconds, const std::string& option);
+
 } // namespace tristim

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
-#include <unistd.h>
 
 namespace tristim {
 
 Progress::Progress(const Limits& limits, int photons_per_pass, bool quiet)
-    : limits_(limits), photons_per_pass_(photons_per_pass), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+    : limits_(limits), photons_per_pass_(photons_per_pass), status_(quiet) {}
 
 std::string Progress::line(std::uint64_t passes) const {
     const double seconds = std::max(elapsed(), 1e-9);
@@ -27,21 +25,12 @@ std::string Progress::line(std::uint64_t passes) const {
 }
 
 void Progress::update(std::uint64_t passes) {
-    const double interval = terminal_ ? 0.1 : 10.0;
-    const double now = elapsed();
-    if (quiet_ || now - last_shown_ < interval)
-        return;
-    last_shown_ = now;
-    if (terminal_)
-        fmt::print(stderr, "\r\033[K{}", line(passes));
-    else
-        fmt::print(stderr, "{}\n", line(passes));
-    std::fflush(stderr);
+    if (status_.due())
+        status_.show(line(passes));
 }
 
 void Progress::finish(std::uint64_t passes) {
-    if (!quiet_)
-        fmt::print(stderr, "{}{}\n", terminal_ ? "\r\033[K" : "", line(passes));
+    status_.finish(line(passes));
 }
 
 std::string format_duration(double seconds) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/stopwatch.h"
+#include "commands/status_line.h"
 
 #include <cstdint>
 #include <optional>
@@ -8,8 +8,7 @@
 
 namespace tristim {
 
-/// The progress line of a render on stderr: pass, photons, photons/s, elapsed, remaining. On a terminal it is rewritten
-/// in place ten times a second; elsewhere a new line appears every ten seconds.
+/// The status line of a render: pass, photons, photons/s, elapsed, remaining.
 class Progress {
   public:
     struct Limits {
@@ -20,17 +19,14 @@ class Progress {
 
     void update(std::uint64_t passes);
     void finish(std::uint64_t passes);
-    double elapsed() const { return stopwatch_.seconds(); }
+    double elapsed() const { return status_.elapsed(); }
 
   private:
     std::string line(std::uint64_t passes) const;
 
     Limits limits_;
     int photons_per_pass_;
-    bool quiet_;
-    bool terminal_;
-    Stopwatch stopwatch_;
-    double last_shown_ = -1e9;
+    StatusLine status_;
 };
 
 /// "1:02:03", or "2:03" below an hour.

@@ -3,11 +3,11 @@
 #include "base/error.h"
 #include "bench/reference.h"
 #include "commands/interrupt.h"
+#include "commands/parse.h"
 #include "commands/progress.h"
 #include "commands/render_arguments.h"
 #include "image/write_image.h"
 
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -34,18 +34,15 @@ void print_summary(const ReferenceCommand& command, const Reference& reference) 
 }
 
 void run(const ReferenceCommand& command) {
-    if (!(command.seconds > 0.0 && std::isfinite(command.seconds)))
-        fail("--time must be a positive number of seconds");
+    check_seconds(command.seconds, "--time");
     if (!command.out.ends_with(".exr"))
         fail("cannot write \"{}\": a reference is an .exr file", command.out);
     check_writable(command.out);
     const Scene scene = load_scene(command.arguments.scene);
     RenderOptions options = resolve_options(command.arguments, scene);
     options.seed = command.arguments.seed.value_or(reference_seed);
-    if (!command.quiet) {
-        for (const std::string& note : scene.notes)
-            fmt::print(stderr, "note: {}\n", note);
-    }
+    if (!command.quiet)
+        print_notes(scene);
 
     catch_interrupts();
     const Device device = open_device(command.arguments.device);

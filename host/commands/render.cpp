@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "commands/interrupt.h"
+#include "commands/parse.h"
 #include "commands/progress.h"
 #include "commands/render_arguments.h"
 #include "image/output_file.h"
@@ -39,8 +40,8 @@ bool is_exr(const std::string& path) {
 }
 
 Progress::Limits limits(const RenderCommand& command, const Scene& scene) {
-    if (command.seconds && !(*command.seconds > 0.0 && std::isfinite(*command.seconds)))
-        fail("--time must be a positive number of seconds");
+    if (command.seconds)
+        check_seconds(*command.seconds, "--time");
     if (!std::isfinite(command.exposure))
         fail("--exposure must be a finite number of stops");
     if (!command.passes && !command.seconds)
@@ -73,10 +74,8 @@ void run(RenderCommand& command) {
         check_writable(path);
     if (!command.stats.empty())
         check_output_file(command.stats);
-    if (!command.quiet) {
-        for (const std::string& note : scene.notes)
-            fmt::print(stderr, "note: {}\n", note);
-    }
+    if (!command.quiet)
+        print_notes(scene);
 
     catch_interrupts();
     const Device device = open_device(command.arguments.device);
@@ -86,7 +85,7 @@ void run(RenderCommand& command) {
         fail("interrupted before the first pass was done: no image written");
 
     const FilmImage film = renderer.film();
-    const XyzImage image{film.full_width, film.full_height, film.region, film.xyz};
+    const XyzImage image = xyz_image(film);
     const ColourSpace space = command.space == "xyz" ? ColourSpace::CieXyz : ColourSpace::Srgb;
     const ToneMapping tone_mapping{command.tone_mapping == "linear" ? ToneMapping::Kind::Linear
                                                                     : ToneMapping::Kind::Photographic,

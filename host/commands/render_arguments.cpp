@@ -104,4 +104,9 @@ RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
     return options;
 }
 
+void print_notes(const Scene& scene) {
+    for (const std::string& note : scene.notes)
+        fmt::print(stderr, "note: {}\n", note);
+}
+
 } // namespace tristim

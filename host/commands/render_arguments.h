@@ -39,4 +39,7 @@ void add_render_settings(CLI::App& command, RenderArguments& arguments);
 /// What the arguments and the scene say together. Throws Error for values that make no sense.
 RenderOptions resolve_options(const RenderArguments& arguments, const Scene& scene);
 
+/// The scene's notes (Scene::notes) on stderr.
+void print_notes(const Scene& scene);
+
 } // namespace tristim

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 
 #include <cmath>
 #include <string_view>
@@ -15,17 +16,6 @@ std::string trimmed(std::string_view text) {
     if (begin == text.npos)
         return {};
     return std::string(text.substr(begin, text.find_last_not_of(blanks) - begin + 1));
-}
-
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0;;) {
-        const std::size_t bar = text.find('|', begin);
-        parts.push_back(trimmed(std::string_view(text).substr(begin, bar == text.npos ? bar : bar - begin)));
-        if (bar == text.npos)
-            return parts;
-        begin = bar + 1;
-    }
 }
 
 /// How messages name a part of the stack.
@@ -110,7 +100,9 @@ std::string FilmStack::description() const {
 }
 
 FilmStack parse_film_stack(const std::string& text) {
-    const std::vector<std::string> parts = split(text);
+    std::vector<std::string> parts = split(text, '|');
+    for (std::string& part : parts)
+        part = trimmed(part);
     if (parts.size() < 2)
         fail("the stack \"{}\" has no base: expected OUTSIDE|LAYER:NM|...|BASE, such as air|SiO2:300|Si", text);
     FilmStack stack;

@@ -1,5 +1,6 @@
 #include "image/error_map.h"
 
+#include "base/round_numbers.h"
 #include "image/compare_images.h"
 #include "image/write_image.h"
 
@@ -15,15 +16,8 @@ namespace {
 
 constexpr double percentile = 0.99;
 
-/// The least of 1, 2 and 5 times a power of ten that is not below a value > 0, save for the value's rounding to float.
-double round_up_1_2_5(double value) {
-    const double power = std::pow(10.0, std::floor(std::log10(value)));
-    for (const double factor : {1.0, 2.0, 5.0}) {
-        if (value <= factor * power * (1.0 + 1e-6))
-            return factor * power;
-    }
-    return 10.0 * power;
-}
+/// Relative, of a value's rounding to float: a round number is not rounded up to the next for it.
+constexpr double float_rounding = 1e-6;
 
 } // namespace
 
@@ -51,7 +45,8 @@ double error_map_scale(std::span<const std::vector<float>> maps) {
         return 0.0;
     const auto rank = static_cast<std::ptrdiff_t>(std::ceil(percentile * static_cast<double>(errors.size()))) - 1;
     std::nth_element(errors.begin(), errors.begin() + rank, errors.end());
-    return round_up_1_2_5(static_cast<double>(errors[static_cast<std::size_t>(rank)]));
+    const double error = static_cast<double>(errors[static_cast<std::size_t>(rank)]);
+    return round_number(round_number_above(error / (1.0 + float_rounding)));
 }
 
 double error_map_position(double error, double scale) {

@@ -120,6 +120,13 @@ void replace_file(const std::string& path, std::span<const unsigned char> bytes)
     file.replace_target();
 }
 
+void make_folder(const std::string& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        fail("cannot make the folder \"{}\": {}", path, error.message());
+}
+
 void replace_file(const std::string& path, std::string_view text) {
     replace_file(path, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }

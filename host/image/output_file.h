@@ -10,6 +10,9 @@ namespace tristim {
 /// writable file stands there. Meant for the start of a long computation; changes nothing.
 void check_output_file(const std::string& path);
 
+/// Makes a folder and those above it, if they are missing. Throws Error.
+void make_folder(const std::string& path);
+
 /// Replaces the file as a whole, or leaves what was there: writes a temporary file in the same folder, flushes it to
 /// the disk and renames it. A symbolic link stays and its target is replaced. Throws Error, with the temporary file
 /// removed.

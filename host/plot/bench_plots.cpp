@@ -10,7 +10,6 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -129,14 +128,10 @@ void write_bench_plots(const Json& results, const std::string& folder) {
         check_summary(results["scenes"][i], checked.scenes[i]);
     }
     const std::filesystem::path plots = std::filesystem::path(folder) / "plots";
-    std::error_code error;
-    std::filesystem::create_directories(plots, error);
-    if (error)
-        fail("cannot make the folder \"{}\": {}", plots.string(), error.message());
+    make_folder(plots.string());
     const std::string output = run_python(script, task_of(results, folder), "draw the bench's plots");
     for (const PlotFile& file : files_in(output))
-        replace_file((plots / file.name).string(),
-                     std::span(reinterpret_cast<const unsigned char*>(file.png.data()), file.png.size()));
+        replace_file((plots / file.name).string(), file.png);
 }
 
 } // namespace tristim

@@ -5,7 +5,6 @@
 #include "plot/python.h"
 
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string_view>
 
 namespace tristim {
@@ -36,8 +35,7 @@ void check_plot_file(const std::string& png_path) {
 
 void write_plot(const Plot& plot, const std::string& png_path) {
     check_plot_file(png_path);
-    const std::string png = run_python(script, to_json(plot), fmt::format("draw the plot \"{}\"", png_path));
-    replace_file(png_path, std::span(reinterpret_cast<const unsigned char*>(png.data()), png.size()));
+    replace_file(png_path, run_python(script, to_json(plot), fmt::format("draw the plot \"{}\"", png_path)));
 }
 
 } // namespace tristim

@@ -1,8 +1,13 @@
 #include "render/film.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tristim {
+
+XyzImage xyz_image(FilmImage film) {
+    return {film.full_width, film.full_height, film.region, std::move(film.xyz)};
+}
 
 FilmImage develop_film(const std::vector<FilmPixel>& pixels, int full_width, int full_height, const Region& region) {
     FilmImage image{full_width, full_height, region, {}, {}, 0, 0};

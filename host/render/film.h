@@ -1,5 +1,6 @@
 #pragma once
 
+#include "image/image.h"
 #include "render/flat_scene.h"
 #include "shared_types.h"
 
@@ -19,6 +20,9 @@ struct FilmImage {
     std::uint64_t rejected_samples = 0;         ///< samples that were not finite
     std::uint64_t passes = 0;
 };
+
+/// The image alone.
+XyzImage xyz_image(FilmImage film);
 
 /// Means and variances from the running sums of kernels/film.cl.
 FilmImage develop_film(const std::vector<FilmPixel>& pixels, int full_width, int full_height, const Region& region);

@@ -8,7 +8,7 @@ ImageMetadata image_metadata(const Renderer& renderer, const std::string& scene,
     const auto integer = [](auto value) { return static_cast<std::int64_t>(value); };
     return {{"scene", scene},
             {"method", options.method.name()},
-            {"sequence", options.random_sequence ? std::string("random") : std::string("stratified")},
+            {"sequence", sequence_name(options)},
             {"passes", integer(statistics.passes)},
             {"photons", integer(statistics.photons_emitted)},
             {"seed", integer(options.seed)},

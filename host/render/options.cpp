@@ -18,6 +18,10 @@ RenderOptions options_from_scene(const RenderSettings& settings) {
     return options;
 }
 
+std::string sequence_name(const RenderOptions& options) {
+    return options.random_sequence ? "random" : "stratified";
+}
+
 void check_options(const RenderOptions& options) {
     constexpr int largest_side = 1 << 15;
     constexpr int most_photons = 1 << 27;

@@ -39,6 +39,9 @@ inline constexpr int default_max_depth = 16;
 /// Options with the scene's own resolution, photons, depth, radius and seed.
 RenderOptions options_from_scene(const RenderSettings& settings);
 
+/// The wavelength sequence as --sequence takes it: "random" or "stratified".
+std::string sequence_name(const RenderOptions& options);
+
 /// Throws Error for sizes, counts or a region that cannot be rendered.
 void check_options(const RenderOptions& options);
 

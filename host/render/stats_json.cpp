@@ -13,7 +13,7 @@ nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& s
     json["version"] = TRISTIM_VERSION;
     json["scene"] = scene;
     json["method"] = options.method.name();
-    json["sequence"] = options.random_sequence ? "random" : "stratified";
+    json["sequence"] = sequence_name(options);
     json["device"] = device.name;
     json["platform"] = device.platform;
     json["driver"] = device.driver;
