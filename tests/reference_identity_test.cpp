@@ -83,6 +83,7 @@ TEST_F(Identity, SeesEveryChangeOfTheScene) {
          "]",
          "Material \"dielectric\" \"float eta\" [ 1.6 ]"},
         {"AreaLightSource", "ReverseOrientation\nAreaLightSource"},
+        {"WorldBegin", "Option \"string rgbupsampling\" \"meng\"\nWorldBegin"},
     };
     for (const auto& [from, to] : changes) {
         const SceneIdentity other = of(changed(from, to));

@@ -77,7 +77,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"CrossedBlocks", with_lit_world("AttributeBegin TransformBegin\nAttributeEnd"), 6, "AttributeEnd"},
         BadScene{"WorldDirectiveTooEarly", "Shape \"sphere\"", 1, "Shape"},
         BadScene{"OptionTooLate", with_lit_world("Film \"rgb\""), 5, "Film"},
-        BadScene{"UnknownOption", "Option \"bool forcediffuse\" true", 1, "forcediffuse"}),
+        BadScene{"UnknownOption", "Option \"bool forcediffuse\" true", 1, "forcediffuse"},
+        BadScene{"UnknownRgbUpsampling", "\nOption \"string rgbupsampling\" \"smits\"", 2, "smits"},
+        BadScene{"RgbUpsamplingOfAnotherType", "Option \"bool rgbupsampling\" true", 1, "rgbupsampling"}),
     label_of);
 
 INSTANTIATE_TEST_SUITE_P(Whole, SceneError,

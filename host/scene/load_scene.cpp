@@ -5,8 +5,8 @@
 
 namespace tristim {
 
-Scene load_scene(const std::string& path) {
-    SceneBuilder builder(path);
+Scene load_scene(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling) {
+    SceneBuilder builder(path, rgb_upsampling);
     SceneParser parser(path, builder);
     parser.run();
     return builder.finish();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scene/source_location.h"
+#include "spectra/spectrum.h"
 
 #include <Imath/ImathVec.h>
 
@@ -28,7 +29,9 @@ struct Parameter {
 class ParameterList {
   public:
     /// `owner` says whose parameters these are in messages: Shape "sphere".
-    ParameterList(std::string owner, SourceLocation where) : owner_(std::move(owner)), where_(std::move(where)) {}
+    /// "rgb" parameters become spectra by `rgb_upsampling`.
+    ParameterList(std::string owner, SourceLocation where, RgbUpsampling rgb_upsampling = RgbUpsampling::JakobHanika)
+        : owner_(std::move(owner)), where_(std::move(where)), rgb_upsampling_(rgb_upsampling) {}
     ParameterList() = default;
 
     /// Throws Error if the name is already there.
@@ -40,6 +43,7 @@ class ParameterList {
     SourceLocation where(const std::string& name) const;
     const SourceLocation& where() const { return where_; }
     const std::string& owner() const { return owner_; }
+    RgbUpsampling rgb_upsampling() const { return rgb_upsampling_; }
 
     double number(const std::string& name, double fallback);
     int integer(const std::string& name, int fallback);
@@ -83,6 +87,7 @@ class ParameterList {
 
     std::string owner_;
     SourceLocation where_;
+    RgbUpsampling rgb_upsampling_ = RgbUpsampling::JakobHanika;
     std::vector<Parameter> parameters_;
 };
 

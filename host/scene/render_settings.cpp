@@ -1,6 +1,7 @@
 #include "scene/scene_builder.h"
 
 #include "scene/transforms.h"
+#include "spectra/rgb_upsampling.h"
 
 #include <cmath>
 #include <set>
@@ -162,6 +163,11 @@ void SceneBuilder::option(const std::string& name, ParameterList parameters) {
     require_options("Option", parameters.where());
     if (name == "seed") {
         scene_.settings.seed = seed_parameter(parameters);
+        return;
+    }
+    if (name == "rgbupsampling") {
+        scene_rgb_upsampling_ =
+            with_location(parameters.where(name), [&] { return parse_rgb_upsampling(parameters.text(name, "")); });
         return;
     }
     const std::set<std::string> without_effect = {"disablepixeljitter",

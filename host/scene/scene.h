@@ -129,8 +129,9 @@ struct Scene {
     std::vector<std::string> notes; ///< "file:line: …" for accepted but ignored directives and dropped triangles
 };
 
-/// Reads a scene file in pbrt-v4 syntax (the subset in README) with its includes and meshes.
-/// Throws Error "file:line: …" for anything unknown, missing, malformed or non-finite.
-Scene load_scene(const std::string& path);
+/// Reads a scene file in pbrt-v4 syntax (the subset in README) with its includes and meshes. `rgb_upsampling` overrides
+/// the scene's Option "string rgbupsampling". Throws Error "file:line: …" for anything unknown, missing, malformed or
+/// non-finite.
+Scene load_scene(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling = std::nullopt);
 
 } // namespace tristim

@@ -9,7 +9,8 @@
 
 namespace tristim {
 
-SceneBuilder::SceneBuilder(const std::string& path) : folder_(std::filesystem::path(path).parent_path().string()) {
+SceneBuilder::SceneBuilder(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling)
+    : folder_(std::filesystem::path(path).parent_path().string()), rgb_upsampling_(rgb_upsampling) {
     scene_.path = path;
 }
 

@@ -9,6 +9,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,11 @@ namespace tristim {
 /// throws Error "file:line: …".
 class SceneBuilder {
   public:
-    /// `path` is the main scene file: other files are sought beside it.
-    explicit SceneBuilder(const std::string& path);
+    /// `path` is the main scene file: other files are sought beside it. `rgb_upsampling` overrides the scene's option.
+    explicit SceneBuilder(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling = std::nullopt);
+
+    /// How the "rgb" parameters of what comes next become spectra.
+    RgbUpsampling rgb_upsampling() const { return rgb_upsampling_.value_or(scene_rgb_upsampling_); }
 
     void set_transform(const M44d& matrix) { state_.ctm = matrix; }
     /// pbrt's CTM = CTM · matrix (see transforms.h).
@@ -97,6 +101,8 @@ class SceneBuilder {
 
     Scene scene_;
     std::string folder_;
+    std::optional<RgbUpsampling> rgb_upsampling_;
+    RgbUpsampling scene_rgb_upsampling_ = RgbUpsampling::JakobHanika;
     GraphicsState state_;
     std::vector<SavedState> saved_;
     std::map<std::string, M44d> coordinate_systems_;

@@ -226,7 +226,7 @@ std::array<double, 16> SceneParser::expect_matrix(const Token& directive) {
 }
 
 ParameterList SceneParser::parameters(std::string owner, const SourceLocation& where) {
-    ParameterList list(owner, where);
+    ParameterList list(owner, where, builder_.rgb_upsampling());
     while (peek().kind == Token::Kind::String)
         list.add(parameter(next(), owner));
     return list;

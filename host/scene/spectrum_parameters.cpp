@@ -10,8 +10,8 @@ namespace tristim {
 
 namespace {
 
-/// How an "rgb" triple becomes a spectrum; pbrt's SpectrumType.
-using RgbUpsampling = Spectrum (*)(const std::array<double, 3>&);
+/// What an "rgb" triple stands for; pbrt's SpectrumType.
+using RgbSpectrum = Spectrum (*)(const std::array<double, 3>&, RgbUpsampling);
 
 /// A spectrum from its "wavelength value" pairs.
 Spectrum from_pairs(const Parameter& parameter) {
@@ -34,10 +34,11 @@ std::array<double, 3> rgb_of(const Parameter& parameter) {
     return {parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]};
 }
 
-Spectrum to_spectrum(const Parameter& parameter, RgbUpsampling upsample, const PathResolver& resolve) {
+Spectrum to_spectrum(const Parameter& parameter, RgbSpectrum of_rgb, RgbUpsampling upsampling,
+                     const PathResolver& resolve) {
     return with_location(parameter.where, [&] {
         if (parameter.type == "rgb")
-            return upsample(rgb_of(parameter));
+            return of_rgb(rgb_of(parameter), upsampling);
         if (parameter.type == "blackbody") {
             if (parameter.numbers.size() != 1)
                 fail("the blackbody \"{}\" takes one temperature, but {} numbers are given", parameter.name,
@@ -87,7 +88,7 @@ std::optional<Spectrum> reflectance_parameter(ParameterList& parameters, const s
     const Parameter* parameter = parameters.spectrum(name);
     if (!parameter)
         return std::nullopt;
-    Spectrum spectrum = to_spectrum(*parameter, &Spectrum::rgb_albedo, resolve);
+    Spectrum spectrum = to_spectrum(*parameter, &Spectrum::rgb_albedo, parameters.rgb_upsampling(), resolve);
     // A sigmoid of a saturated colour may round to just above 1.
     constexpr double rounding = 1e-9;
     if (const auto nm = first_violation(spectrum, [](double r) { return r >= -rounding && r <= 1.0 + rounding; }))
@@ -100,15 +101,16 @@ std::optional<Spectrum> index_parameter(ParameterList& parameters, const std::st
     const Parameter* parameter = parameters.spectrum(name);
     if (!parameter)
         return std::nullopt;
-    Spectrum spectrum = to_spectrum(*parameter, &Spectrum::rgb_unbounded, resolve);
+    Spectrum spectrum = to_spectrum(*parameter, &Spectrum::rgb_unbounded, parameters.rgb_upsampling(), resolve);
     check_index(spectrum, name, may_be_zero, parameter->where);
     return spectrum;
 }
 
 Spectrum emission_parameter(ParameterList& parameters, const std::string& name, const PathResolver& resolve) {
     const Parameter* parameter = parameters.spectrum(name);
-    const Spectrum raw =
-        parameter ? to_spectrum(*parameter, &Spectrum::rgb_illuminant, resolve) : Spectrum::named("stdillum-D65");
+    const Spectrum raw = parameter
+                             ? to_spectrum(*parameter, &Spectrum::rgb_illuminant, parameters.rgb_upsampling(), resolve)
+                             : Spectrum::named("stdillum-D65");
     const SourceLocation where = parameters.where(name);
     if (const auto nm = first_violation(raw, [](double value) { return value >= 0.0; }))
         fail_at(where, "the emission \"{}\" is negative at {} nm", name, *nm);

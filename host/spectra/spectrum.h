@@ -13,6 +13,12 @@ inline constexpr double lambda_min_nm = 380.0;
 inline constexpr double lambda_max_nm = 780.0;
 inline constexpr int lambda_bins = 400;
 
+/// How RGB colours become reflectances, from which their spectra follow (rgb_upsampling.h).
+enum class RgbUpsampling {
+    JakobHanika, ///< the sigmoid of a quadratic (Jakob & Hanika 2019)
+    Meng         ///< the smoothest one within [0, 1] (Meng et al. 2015)
+};
+
 /// A spectral distribution: a function of the wavelength in nm. Immutable and cheap to copy.
 /// The unit of the value is the user's: reflectance, refractive index, or W·m⁻²·sr⁻¹·nm⁻¹. By default the constant 0.
 /// Spectra that are computed from formulas (blackbody, rgb_…) are sampled every 1 nm from 360 to 830 nm.
@@ -29,17 +35,17 @@ class Spectrum {
     /// the temperature is positive and finite.
     static Spectrum blackbody(double kelvin);
 
-    /// Smooth reflectance of a linear sRGB colour in [0,1]³: the sigmoid of a quadratic by Jakob & Hanika 2019, fitted
-    /// in double precision so that it reproduces the colour under D65. Throws Error for values outside [0,1].
-    static Spectrum rgb_albedo(const std::array<double, 3>& rgb);
+    /// Smooth reflectance of a linear sRGB colour in [0,1]³, fitted in double precision so that it reproduces the
+    /// colour under D65; greys are constant. Throws Error for values outside [0,1].
+    static Spectrum rgb_albedo(const std::array<double, 3>& rgb, RgbUpsampling = RgbUpsampling::JakobHanika);
 
-    /// Emission of a linear sRGB colour ≥ 0: m · sigmoid(rgb/m) · D65 with m = 2 max(rgb), as pbrt-v4's
+    /// Emission of a linear sRGB colour ≥ 0: m · albedo(rgb/m) · D65 with m = 2 max(rgb), as pbrt-v4's
     /// RGBIlluminantSpectrum. `rgb_illuminant_white()` is the D65 factor alone, by which pbrt normalises such lights.
-    static Spectrum rgb_illuminant(const std::array<double, 3>& rgb);
+    static Spectrum rgb_illuminant(const std::array<double, 3>& rgb, RgbUpsampling = RgbUpsampling::JakobHanika);
     static Spectrum rgb_illuminant_white();
 
-    /// Unbounded positive colour: m · sigmoid(rgb/m), m = 2 max(rgb), as pbrt-v4's RGBUnboundedSpectrum.
-    static Spectrum rgb_unbounded(const std::array<double, 3>& rgb);
+    /// Unbounded positive colour: m · albedo(rgb/m), m = 2 max(rgb), as pbrt-v4's RGBUnboundedSpectrum.
+    static Spectrum rgb_unbounded(const std::array<double, 3>& rgb, RgbUpsampling = RgbUpsampling::JakobHanika);
 
     /// A named spectrum ("glass-BK7", "metal-Au-k", "stdillum-D65", …). The illuminants ("stdillum-…", "illum-…") are
     /// scaled to Y = 1, as in pbrt-v4. Throws Error naming near matches if unknown.
