@@ -79,15 +79,22 @@
 #endif
 #define W_PADDED (LANES * BLOCKS)
 
-// The sampler that fills the table: read by wavelengths.cl alone.
+// The sampler that fills the table, a file of kernels/samplers/: read by wavelengths.cl alone.
 #define SAMPLER_TRISTIMULUS 0
 #define SAMPLER_SPECTRAL 1
 #define SAMPLER_RGB 2
+#define SAMPLER_GAUSS 3
+#define SAMPLER_UNIFORM 4
+#define SAMPLER_CLUSTER 5
+#define SAMPLER_HERO 6
+#define SAMPLER_VISIBLE 7
+#define SAMPLER_MIXTURE 8
+#define SAMPLER_ILLUMINANT 9
 #ifndef SAMPLER
 #define SAMPLER SAMPLER_TRISTIMULUS
 #endif
 #ifndef SEQUENCE_RANDOM
-#define SEQUENCE_RANDOM 0  // 1: u is a new random number in each pass and set (the paper); 0: stratified golden ratio
+#define SEQUENCE_RANDOM 0  // 1: new random numbers in each pass (the paper); 0: stratified within and over the passes
 #endif
 
 // Camera paths may carry a throughput of its own for every wavelength.

@@ -156,8 +156,11 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
     scramble.hi = pcg4d((uint4)(image_pixel, STREAM_EYE, 1u, seed));
 #endif
     const float8 u = sobol8(sobol_table, pass, scramble);
-    // Over W passes a pixel visits every slot once; neighbours begin at different ones.
-    const int slot = (int)(((scramble.s0 >> 8) + pass) % (uint)W);
+    // Over W passes a pixel visits every slot once; neighbours begin at different ones. The slots turn by the golden-ratio sequence
+    // from one W passes to the next: else, with W a power of two, each would always see the same part of its stratum, since every
+    // W-th point of the wavelengths' Sobol' sequence lies there.
+    const uint turn = (uint)(unit_float(pass / (uint)W * 2654435769u) * (float)W);  // 2^32 / golden ratio
+    const int slot = (int)(((scramble.s0 >> 8) + pass + turn) % (uint)W);
 
     EyePath path;
     camera_ray(constants, (float2)((float)x, (float)y) + u.EYE_FILM, u.EYE_LENS, &path.origin, &path.direction);

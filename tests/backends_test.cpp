@@ -1,8 +1,10 @@
 // The same kernels on Debian's three OpenCL implementations: PoCL, Oclgrind's simulator with its memory checks, and
 // Mesa's rusticl on llvmpipe.
 
+#include "child_process.h"
 #include "image/compare_images.h"
 #include "image/read_image.h"
+#include "scene_folder.h"
 #include "test_scenes.h"
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -102,6 +105,32 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Rusticl,
                                          RusticlCase{"anodised-titanium/scene", true},
                                          RusticlCase{"interference-areas/c", true}),
                          [](const auto& test) { return folder(test.param.scene); });
+
+/// Runs this program's tests SamplerTables (kernel_samplers_test.cpp) on another device: the tables of wavelengths and
+/// weights that every sampler fills, against formulas in double. Only in a process of its own: platforms are there from
+/// the start or never.
+void expect_sampler_tables(std::vector<std::string> words, std::map<std::string, std::string> environment,
+                           const std::string& device) {
+    environment["TRISTIM_DEVICE"] = device;
+    words.push_back(std::filesystem::read_symlink("/proc/self/exe").string());
+    words.push_back("--gtest_filter=SamplerTables.*");
+    const test::ChildResult child = test::run_program("/usr/bin/env", words, environment);
+    EXPECT_EQ(child.exit_code, 0) << child.standard_output << child.standard_error;
+    EXPECT_NE(child.standard_output.find("SamplerTables.HoldTheWavelengths"), std::string::npos)
+        << "the tests of the tables did not run";
+}
+
+TEST(OclgrindSamplers, FillTheSameTables) {
+    const test::SceneFolder folder;
+    const std::string log = folder.path("oclgrind.log");
+    expect_sampler_tables({"oclgrind", "--data-races", "--check-api", "--log", log}, {}, "oclgrind");
+    EXPECT_TRUE(std::filesystem::exists(log));
+    EXPECT_EQ(test::read_text(log), "");
+}
+
+TEST(RusticlSamplers, FillTheSameTables) {
+    expect_sampler_tables({}, {{"RUSTICL_ENABLE", "llvmpipe"}}, "rusticl");
+}
 
 } // namespace
 } // namespace tristim

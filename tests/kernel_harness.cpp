@@ -30,7 +30,8 @@ double turn(double x, double y) {
 }
 
 const Device& test_device() {
-    static const Device device = open_device("");
+    // Never destroyed: at the end of the process an OpenCL implementation may be gone before it.
+    static const Device& device = *new Device(open_device(""));
     return device;
 }
 

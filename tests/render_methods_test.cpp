@@ -1,8 +1,8 @@
 // The methods' images of the scenes that come with the project: those that sample wavelengths converge to one image;
 // rgb does not where colours come from dispersion.
 #include "image_statistics.h"
+#include "test_names.h"
 
-#include <cctype>
 #include <cmath>
 
 namespace tristim::test {
@@ -33,13 +33,6 @@ struct SceneCase {
     /// compared.
     bool all_methods;
 };
-
-std::string test_name(const char* file) {
-    std::string name = file;
-    for (char& c : name)
-        c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-    return name;
-}
 
 class Methods : public testing::TestWithParam<SceneCase> {};
 

@@ -7,8 +7,9 @@
 namespace tristim {
 
 /// The number that is all of the text, in the C locale's notation ("1e3", "inf"), else none.
-inline std::optional<double> parse_number(std::string_view text) {
-    double value = 0.0;
+template <typename Number = double>
+std::optional<Number> parse_number(std::string_view text) {
+    Number value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size())
         return std::nullopt;

@@ -266,14 +266,25 @@ double geometric_power(const SceneLight& light, double scene_radius) {
     }
 }
 
-/// Chooses lights in proportion to the Y of their power. luminances[row] is the Y of spectrum `row`.
-void weigh_lights(const Scene& scene, const std::vector<double>& luminances, FlatScene& flat) {
+/// Chooses lights in proportion to the Y of their power, and sums up what they emit. rows[i] is the spectrum of
+/// scene.lights[i].
+void weigh_lights(const Scene& scene, const std::vector<int>& rows, FlatScene& flat) {
+    std::vector<double> of_row(static_cast<std::size_t>(flat.spectra.rows()), 0.0);
+    std::vector<double> luminances = of_row;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        luminances[static_cast<std::size_t>(rows[i])] = spectrum_to_xyz(scene.lights[i].emission)[1];
     std::vector<double> powers;
     double total = 0.0;
     for (const SceneLight& light : flat.lights) {
-        powers.push_back(geometric_power(light, flat.constants.radius) *
-                         luminances[static_cast<std::size_t>(light.spectrum)]);
+        const double geometric = geometric_power(light, flat.constants.radius);
+        of_row[static_cast<std::size_t>(light.spectrum)] += geometric;
+        powers.push_back(geometric * luminances[static_cast<std::size_t>(light.spectrum)]);
         total += powers.back();
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto bins = scene.lights[i].emission.bins();
+        for (std::size_t bin = 0; bin < bins.size(); ++bin)
+            flat.emission[bin] += of_row[static_cast<std::size_t>(rows[i])] * bins[bin];
     }
     if (!(total > 0.0) || !std::isfinite(total))
         fail("{}: the lights emit nothing that is visible", scene.path);
@@ -294,11 +305,8 @@ FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, i
     add_materials(scene, effects, flat);
 
     std::vector<int> rows;
-    std::vector<double> luminances(static_cast<std::size_t>(flat.spectra.rows()), 0.0);
-    for (const Light& light : scene.lights) {
+    for (const Light& light : scene.lights)
         rows.push_back(flat.spectra.add(light.emission, SpectrumTable::Use::Emission));
-        luminances.push_back(spectrum_to_xyz(light.emission)[1]);
-    }
     place_film_tables(flat);
     SceneConstants& c = flat.constants;
     c.infinite_light = -1;
@@ -319,7 +327,7 @@ FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, i
         add_triangles(shape, effects, emits ? &scene.lights[light] : nullptr, emits ? rows[light] : -1, flat);
     }
     bound(flat);
-    weigh_lights(scene, luminances, flat);
+    weigh_lights(scene, rows, flat);
     place_camera(scene.camera, width, height, c);
     c.light_count = static_cast<int>(flat.lights.size());
     c.region_x = region.x;

@@ -2,24 +2,52 @@
 
 #include "opencl/program.h"
 
+#include <span>
 #include <string>
 
 namespace tristim {
 
 /// A rendering method: how the wavelengths of a pass are chosen and weighted.
 struct Method {
-    enum class Kind { Tristimulus, Spectral, RgbBands };
+    enum class Kind {
+        Tristimulus,
+        Spectral,
+        RgbBands,
+        Gauss,
+        Uniform,
+        Cluster,
+        Hero,
+        Visible,
+        Mixture,
+        Illuminant,
+        IlluminantMixture
+    };
     Kind kind = Kind::Tristimulus;
-    int sets = 1; ///< Tristimulus: N, sets of three wavelengths
+    int count = 1; ///< what follows the colon: sets of three, or wavelengths
 
     int wavelengths() const;  ///< W
+    bool unbiased() const;    ///< whether passes average to the exact XYZ of every spectrum
     std::string name() const; ///< "tristimulus:1", as the command line takes it
 };
 
-/// The most sets that tristimulus:N accepts.
-inline constexpr int max_sets = 256;
+/// What there is to say about a kind of method; its formula stands in kernels/samplers/.
+struct MethodKind {
+    Method::Kind kind;
+    const char* name;
+    const char* count_name; ///< "N", "C", a fixed number, or null if nothing follows the name
+    int least, most;        ///< of the count
+    int wavelengths;        ///< for each unit of the count
+    bool unbiased;
+    const char* sampler; ///< value of the macro SAMPLER
+    const char* summary; ///< one line of help
+    const char* source;
+};
+std::span<const MethodKind> method_kinds();
 
-/// Parses "tristimulus:N", "spectral:400" or "rgb". Throws Error for anything else.
+/// "tristimulus:N", as help and errors show it.
+std::string pattern(const MethodKind& kind);
+
+/// Parses "tristimulus:4", "spectral:400", "rgb" and so on. Throws Error, with what was expected, for anything else.
 Method parse_method(const std::string& text);
 
 /// How W wavelengths lie in vectors: blocks of `lanes` floats.

@@ -38,7 +38,4 @@ class SpectrumTable {
     std::vector<Entry> entries_;
 };
 
-/// The constant table of a sampler, as kernels/wavelengths.cl documents it.
-std::vector<float> sampler_table(const Method& method);
-
 } // namespace tristim

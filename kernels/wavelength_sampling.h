@@ -1,0 +1,91 @@
+// What the wavelength samplers of kernels/samplers/ share. A sampler is one function,
+//
+//   float sample_wavelength(const Sampler* s, int w, float3* weight);
+//
+// which says where wavelength w of the pass's W lies [nm] and what it weighs in X, Y and Z, so that the mean over the passes of
+// Σ_w weight_w L(λ_w) is (1/k) ∫ L(λ) (x̄, ȳ, z̄) dλ with k = ∫ ȳ dλ: for a wavelength of pdf p among n that do the same work,
+// (x̄, ȳ, z̄)/(k n p).
+#ifndef TRISTIM_WAVELENGTH_SAMPLING_H
+#define TRISTIM_WAVELENGTH_SAMPLING_H
+
+#include "rng.h"
+
+#define LAMBDA_MIN 380.0f
+#define LAMBDA_MAX 780.0f
+#define LAMBDA_BINS 400
+#define SOBOL_DEGREE 5u
+
+typedef struct Sampler {
+    uint seed, pass;
+    const global float* matching;  // three rows of LAMBDA_BINS: x̄/k, ȳ/k and z̄/k [1/nm], means over the bins [380 + i, 381 + i) nm
+    const global float* table;     // what host/render/sampler_table.cpp adds for this sampler
+} Sampler;
+
+// A number in [0, 1) for a pass: with --sequence random a new one for each index, else the pass's point of a Sobol' sequence, the
+// same for all, with a random digital shift. Its dimension is the ninth of Joe & Kuo 2008 (of the polynomial x⁵ + x³ + 1),
+// behind the eight of the camera paths, with which wavelengths are so stratified too.
+float pass_position(uint seed, uint pass, uint index) {
+#if SEQUENCE_RANDOM
+    return random4(seed, pass, index, STREAM_WAVELENGTHS).x;
+#else
+    uint last[SOBOL_DEGREE] = {1u << 31, 1u << 30, 5u << 29, 5u << 28, 5u << 27};  // direction numbers
+    uint x = pcg4d((uint4)(0u, STREAM_WAVELENGTHS, 0u, seed)).x;
+    for (uint bit = 0u; pass >> bit != 0u && bit < 32u; ++bit) {
+        const uint k = bit % SOBOL_DEGREE;
+        if (bit >= SOBOL_DEGREE)
+            last[k] = last[k] ^ last[k] >> SOBOL_DEGREE ^ last[(k + 3u) % SOBOL_DEGREE];
+        x ^= pass >> bit & 1u ? last[k] : 0u;
+    }
+    return unit_float(x);
+#endif
+}
+
+// Sample j of n at equal distances in [0, 1), one position v for all: (j + v)/n. As a set this is the rotation of one sample in steps of
+// 1/n around [0, 1).
+float rotated_position(uint seed, uint pass, uint j, uint n) {
+    return min(((float)j + pass_position(seed, pass, 0u)) / (float)n, 0x1.fffffep-1f);
+}
+
+// Sample j of n: n independent numbers with --sequence random, else at equal distances.
+float sample_position(uint seed, uint pass, uint j, uint n) {
+#if SEQUENCE_RANDOM
+    return pass_position(seed, pass, j);
+#else
+    return rotated_position(seed, pass, j, n);
+#endif
+}
+
+int wavelength_bin(float lambda) { return clamp((int)(lambda - LAMBDA_MIN), 0, LAMBDA_BINS - 1); }
+
+// (x̄, ȳ, z̄)/k at a wavelength [1/nm].
+float3 colour_matching(const Sampler* s, float lambda) {
+    const global float* bin = s->matching + wavelength_bin(lambda);
+    return (float3)(bin[0], bin[LAMBDA_BINS], bin[2 * LAMBDA_BINS]);
+}
+
+// λ at a value u of the CDF: bins hold the fraction cdf[i+1] - cdf[i], evenly within, which is also the pdf [1/nm]. λ never rounds
+// up into the next bin, whose light may be brighter than that pdf expects by orders of magnitude.
+float invert_cdf(const global float* cdf, float u, float* pdf) {
+    int low = 0, high = LAMBDA_BINS;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (cdf[middle] <= u)
+            low = middle;
+        else
+            high = middle;
+    }
+    *pdf = cdf[low + 1] - cdf[low];
+    return LAMBDA_MIN + (float)low + clamp((u - cdf[low]) / *pdf, 0.0f, 1.0f - 0x1p-14f);
+}
+
+// λ with the pdf of Radziszewski et al. 2009, near the eye's sensitivity and invertible: p(λ) ∝ 1/cosh²(0.0072 (λ - 538 nm)).
+float invert_visible(float u, float* pdf) {
+    const float slope = 0.0072f, centre = 538.0f;
+    const float first = tanh(slope * (LAMBDA_MIN - centre));
+    const float last = tanh(slope * (LAMBDA_MAX - centre));
+    const float t = mix(first, last, u);
+    *pdf = slope * (1.0f - t * t) / (last - first);
+    return clamp(centre + atanh(t) / slope, LAMBDA_MIN, LAMBDA_MAX);
+}
+
+#endif
