@@ -308,7 +308,9 @@ TEST(BenchResultsFile, ReadsBackWhatWasWritten) {
     auto repeat = scene["runs"][1]["repeats"][0];
     EXPECT_EQ(repeat["checkpoints"].size(), 11U);
     repeat.erase("checkpoints");
-    EXPECT_EQ(repeat.dump(), R"({"seed":9,"build_seconds":0.3,"compare_seconds":0.7,"finished":true})");
+    EXPECT_EQ(
+        repeat.dump(),
+        R"({"seed":9,"method":"","trial_seconds":0.0,"build_seconds":0.3,"compare_seconds":0.7,"finished":true})");
     EXPECT_EQ(read.scenes[0].regions, filled_results().scenes[0].regions);
     EXPECT_EQ(read.devices, filled_results().devices);
     EXPECT_EQ(read.seed, 4294967295U);

@@ -51,7 +51,7 @@ TEST(BenchInstrument, MeasuredErrorIsTheTrueOne) {
     const std::vector<RenderOptions> options{lattice_options("tristimulus:1", 3), lattice_options("rgb", 4)};
     std::vector<Contestant> contestants;
     for (const RenderOptions& of_one : options)
-        contestants.emplace_back(scene, of_one, test_device(), checkpoint_times(0.1));
+        contestants.emplace_back(Renderer(scene, of_one, test_device()), checkpoint_times(0.1));
     run_race(contestants, to_reference(exact), lattice_regions(), 0.01, [](double) { return true; });
 
     const double rounding = rounding_of(exact);
@@ -312,7 +312,7 @@ TEST(BenchInstrument, RaceGivesEveryoneTheSameTime) {
     const Scene scene = lattice(lattice_size, lattice_coverage);
     std::vector<Contestant> contestants;
     for (const char* method : {"tristimulus:1", "spectral:400", "tristimulus:20"})
-        contestants.emplace_back(scene, lattice_options(method, 1), test_device(), times);
+        contestants.emplace_back(Renderer(scene, lattice_options(method, 1), test_device()), times);
 
     const auto seconds = [&] {
         std::vector<double> result;
@@ -360,7 +360,7 @@ TEST(BenchInstrument, RaceGoesInSlices) {
     const Scene scene = lattice(lattice_size, lattice_coverage);
     std::vector<Contestant> contestants;
     for (const std::uint32_t seed : {1U, 2U})
-        contestants.emplace_back(scene, lattice_options("tristimulus:1", seed), test_device(),
+        contestants.emplace_back(Renderer(scene, lattice_options("tristimulus:1", seed), test_device()),
                                  std::vector{0.0201, 0.0501});
     std::vector<double> before{0.0, 0.0};
     run_race(contestants, to_reference(exact_lattice()), lattice_regions(), slice, [&](double) {
@@ -380,7 +380,7 @@ TEST(BenchInstrument, RaceGoesInSlices) {
 TEST(BenchInstrument, RaceStopsWhenToldTo) {
     const Scene scene = lattice(lattice_size, lattice_coverage);
     std::vector<Contestant> contestants;
-    contestants.emplace_back(scene, lattice_options("tristimulus:1", 1), test_device(), std::vector{1e6});
+    contestants.emplace_back(Renderer(scene, lattice_options("tristimulus:1", 1), test_device()), std::vector{1e6});
     int turns = 0;
     run_race(contestants, to_reference(exact_lattice()), lattice_regions(), 1e-4, [&](double) { return turns++ < 3; });
     EXPECT_FALSE(contestants[0].finished());

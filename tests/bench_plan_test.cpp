@@ -89,7 +89,7 @@ TEST(BenchPlan, BadMethodsAreRefused) {
         expect_message(error_of([&] { method_variants(methods, base_options()); }), "", words);
     };
     refused("rgb,spectrum", "unknown method 'spectrum'");
-    refused("tristimulus:0", "unknown method 'tristimulus:0'");
+    refused("tristimulus:0", "bad method 'tristimulus:0'");
     refused("", "unknown method ''");
     refused("rgb,", "unknown method ''");
     refused(",rgb", "unknown method ''");

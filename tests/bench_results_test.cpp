@@ -48,7 +48,8 @@ BenchResults filled() {
     a.device = 1;
     a.options = {{"method", "rgb"}, {"alpha", 0.5}};
     a.memory = {11, 12, 13, 14.5, 15.5};
-    a.repeats = {{5, 1.5, 0.25, true, {checkpoint(0.1), checkpoint(0.3)}}, {6, 1.25, 0.125, false, {checkpoint(0.2)}}};
+    a.repeats = {{5, "rgb", 0.75, 1.5, 0.25, true, {checkpoint(0.1), checkpoint(0.3)}},
+                 {6, "hero:4", 0.5, 1.25, 0.125, false, {checkpoint(0.2)}}};
     a.image = "images/a.png";
     a.error_map = "images/a-error.png";
     tristim::Run b = a;
@@ -71,6 +72,8 @@ TEST(BenchResultsFile, KeepsEverything) {
     EXPECT_EQ(again.devices, filled().devices);
     EXPECT_EQ(again.seed, 4294967295U);
     EXPECT_EQ(again.scenes[0].regions, filled().scenes[0].regions);
+    EXPECT_EQ(run.repeats.at(1).method, "hero:4");
+    EXPECT_EQ(run.repeats[1].trial_seconds, 0.5);
     EXPECT_EQ(run.repeats.at(0).checkpoints.at(1).rmse, filled().scenes[0].runs[0].repeats[0].checkpoints[1].rmse);
     EXPECT_EQ(run.repeats[0].checkpoints[0].photons, (1ULL << 40) + 7);
     EXPECT_FALSE(run.repeats.at(1).finished);

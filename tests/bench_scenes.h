@@ -100,7 +100,7 @@ inline double root_mean_square(const TestImage& image, const Region& region) {
 
 /// A contestant that never reaches a checkpoint by itself: render(0) is one pass.
 inline Contestant pass_by_pass(const Scene& scene, const RenderOptions& options) {
-    return {scene, options, test_device(), {1e9}};
+    return {Renderer(scene, options, test_device()), {1e9}};
 }
 
 /// A repeat measured after 1, 2, 4, … passes, up to 2^doublings.

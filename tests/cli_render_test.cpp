@@ -65,7 +65,7 @@ TEST_F(CliRender, HelpNamesEveryOptionAndDefaults) {
                               "=sample",        "--radius",  "=global",         "--initial-radius", "auto",
                               "--max-depth",    "16",        "--math",          "=precise",         "--space",
                               "=srgb",          "--tonemap", "=photographic",   "--exposure",       "--stats",
-                              "--dump-kernels", "--quiet",   "--radius-factor", "--alpha"})
+                              "--dump-kernels", "--quiet",   "--radius-factor", "--alpha",          "--rgb-upsampling"})
         EXPECT_NE(help.find(words), std::string::npos) << words << " is not in\n" << help;
 }
 

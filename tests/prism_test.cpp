@@ -150,16 +150,17 @@ kernel void follow(SCENE_PARAMETERS, float3 origin, float3 direction, global flo
 )",
         {{"W", "10"}, {"LANES", "16"}, {"BLOCKS", "1"}, {"HAS_DIELECTRIC", "1"}, {"HAS_DISPERSION", "1"}});
     const FlatScene flat = flatten_scene(prism_scene(), derive_effects(prism_scene()), 1, 1, {0, 0, 1, 1});
-    const SceneBuffers buffers(test_device(), flat, 0);
+    const SceneBuffers buffers(test_device(), flat);
     // Rows of 16: four of wavelengths and weights, then the spectra, of which the materials name the glass's.
     std::vector<float> table(16 * (4 + static_cast<std::size_t>(flat.spectra.rows())), 0.0F);
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w)
         table[16 * (4 + static_cast<std::size_t>(flat.materials[0].eta)) + w] =
             static_cast<float>(glass()(wavelengths_nm[w]));
     const Buffer<float> pass_table = upload(table);
+    const RayRecorder recorder(test_device(), 0);
     const Buffer<cl_float4> output = make_buffer<cl_float4>(3 * wavelengths_nm.size());
     ::cl::Kernel kernel(program, "follow");
-    cl_uint index = buffers.bind(kernel, pass_table);
+    cl_uint index = buffers.bind(kernel, pass_table, recorder);
     const V3f from = to_v3f(source), along = to_v3f(beam);
     set_argument(kernel, index++, cl_float3{{from.x, from.y, from.z}});
     set_argument(kernel, index++, cl_float3{{along.x, along.y, along.z}});

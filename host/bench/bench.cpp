@@ -9,6 +9,7 @@
 #include "bench/resume.h"
 #include "image/output_file.h"
 #include "image/write_image.h"
+#include "render/choose_method.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -69,8 +70,10 @@ class Bench {
     void remove_states() const;
     void save();
     bool measure_scene(PlannedScene& planned);
-    Reference obtain_reference(PlannedScene& planned, bool& stopped);
-    bool run_repeat(PlannedScene& planned, const XyzImage& reference, std::size_t repeat);
+    Reference obtain_reference(PlannedScene& planned, DeviceScenes& scenes, bool& stopped);
+    double choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const Repeat& earlier,
+                  RenderOptions& options) const;
+    bool run_repeat(PlannedScene& planned, DeviceScenes& scenes, const XyzImage& reference, std::size_t repeat);
 
     BenchPlan& plan_;
     const BenchCallback& callback_;
@@ -132,7 +135,7 @@ void Bench::save() {
     since_save_ = Stopwatch();
 }
 
-Reference Bench::obtain_reference(PlannedScene& planned, bool& stopped) {
+Reference Bench::obtain_reference(PlannedScene& planned, DeviceScenes& scenes, bool& stopped) {
     const std::string what = planned.results.name + ": reference";
     const auto progress = [&](std::uint64_t, double seconds) {
         stopped = !go_on(seconds, what);
@@ -144,7 +147,7 @@ Reference Bench::obtain_reference(PlannedScene& planned, bool& stopped) {
     const std::string file = own ? path(name) : name;
     // What is measured was measured against the file as it is.
     Reference reference = own && !measured
-                              ? render_reference(planned.scene, planned.results.file, planned.reference_options,
+                              ? render_reference(scenes, planned.results.file, planned.reference_options,
                                                  plan_.devices.front(), plan_.reference_seconds, file, progress)
                               : read_reference(file);
     if (own && reference.passes < 2)
@@ -163,7 +166,8 @@ Reference Bench::obtain_reference(PlannedScene& planned, bool& stopped) {
 
 bool Bench::measure_scene(PlannedScene& planned) {
     bool stopped = false;
-    const Reference reference = obtain_reference(planned, stopped);
+    DeviceScenes scenes(planned.scene);
+    const Reference reference = obtain_reference(planned, scenes, stopped);
     if (planned.given_reference.empty())
         done_ += plan_.reference_seconds;
     planned.results.image = "images/" + planned.results.name + "-reference.png";
@@ -174,15 +178,32 @@ bool Bench::measure_scene(PlannedScene& planned) {
         const bool measured = std::all_of(runs.begin(), runs.end(), [&](const Run& run) {
             return run.repeats.size() > repeat && run.repeats[repeat].finished;
         });
-        stopped = !measured && !run_repeat(planned, reference.image, repeat);
+        stopped = !measured && !run_repeat(planned, scenes, reference.image, repeat);
         done_ += race_seconds(planned);
     }
+    note_choices(planned.results);
     if (!stopped)
-        compare_math(planned, plan_.devices, plan_.results.seed);
+        compare_math(planned, scenes, plan_.devices, plan_.results.seed);
     return !stopped;
 }
 
-bool Bench::run_repeat(PlannedScene& planned, const XyzImage& reference, std::size_t repeat) {
+/// For the method auto: fills in what an earlier part of the repeat chose, or chooses. Returns the seconds that
+/// choosing took.
+double Bench::choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const Repeat& earlier,
+                     RenderOptions& options) const {
+    if (!options.auto_method)
+        return 0.0;
+    options.auto_method = false;
+    if (!earlier.method.empty()) {
+        options.method = parse_method(earlier.method);
+        return earlier.trial_seconds;
+    }
+    const MethodChoice choice = choose_method(scene, options, device, {{}, plan_.results.seconds});
+    options.method = choice.method;
+    return choice.seconds;
+}
+
+bool Bench::run_repeat(PlannedScene& planned, DeviceScenes& scenes, const XyzImage& reference, std::size_t repeat) {
     const BenchResults& bench = plan_.results;
     std::vector<Run>& runs = planned.results.runs;
     const std::string what =
@@ -194,9 +215,11 @@ bool Bench::run_repeat(PlannedScene& planned, const XyzImage& reference, std::si
             return false;
         RenderOptions options = planned.options[i];
         options.seed = bench.seed + static_cast<std::uint32_t>(repeat);
-        contestants.emplace_back(planned.scene, options, plan_.devices[runs[i].device],
-                                 checkpoint_times(bench.seconds));
+        const Device& device = plan_.devices[runs[i].device];
         runs[i].repeats.resize(std::max(runs[i].repeats.size(), repeat + 1));
+        const double trial_seconds = choose(scenes.get(options, device), device, runs[i].repeats[repeat], options);
+        contestants.emplace_back(Renderer(scenes.get(options, device), options, device),
+                                 checkpoint_times(bench.seconds), trial_seconds);
         contestants.back().restore(state_path(planned, runs[i], repeat), runs[i].repeats[repeat]);
     }
 

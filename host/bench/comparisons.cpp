@@ -12,6 +12,7 @@ namespace tristim {
 namespace {
 
 constexpr std::uint32_t math_passes = 16;
+constexpr const char* choice_note = "Chosen for";
 
 /// Seconds of a pass, over all repeats.
 double pass_seconds(const Run& run) {
@@ -47,7 +48,23 @@ void write_images(SceneResults& scene, const std::vector<Contestant>& contestant
     }
 }
 
-void compare_math(PlannedScene& planned, const std::vector<Device>& devices, std::uint32_t seed) {
+void note_choices(SceneResults& scene) {
+    for (RunGroup& group : scene.groups) {
+        std::erase_if(group.notes, [](const std::string& note) { return note.starts_with(choice_note); });
+        for (std::size_t i = 0; i < group.runs.size(); ++i) {
+            const Run& run = scene.runs[group.runs[i]];
+            if (run.options.value("method", "") != "auto")
+                continue;
+            std::vector<std::string> choices;
+            for (const Repeat& repeat : run.repeats)
+                choices.push_back(fmt::format("{} (in {:.2g} s)", repeat.method, repeat.trial_seconds));
+            group.notes.push_back(
+                fmt::format("{} {} by trial passes: {}.", choice_note, group.labels[i], fmt::join(choices, ", ")));
+        }
+    }
+}
+
+void compare_math(PlannedScene& planned, DeviceScenes& scenes, const std::vector<Device>& devices, std::uint32_t seed) {
     const auto group = std::find_if(planned.results.groups.begin(), planned.results.groups.end(),
                                     [](const RunGroup& g) { return g.name == "math"; });
     if (group == planned.results.groups.end() || !group->notes.empty())
@@ -58,7 +75,8 @@ void compare_math(PlannedScene& planned, const std::vector<Device>& devices, std
     for (const std::size_t run : {precise, fast}) {
         RenderOptions options = planned.options[run];
         options.seed = seed;
-        Renderer renderer(planned.scene, options, devices[planned.results.runs[run].device]);
+        const Device& device = devices[planned.results.runs[run].device];
+        Renderer renderer(scenes.get(options, device), options, device);
         for (std::uint32_t pass = 0; pass < math_passes; ++pass)
             renderer.render_pass(pass);
         images.push_back(xyz_image(renderer.film()));

@@ -33,10 +33,11 @@ std::vector<double> checkpoint_times(double seconds) {
     return times;
 }
 
-Contestant::Contestant(const Scene& scene, const RenderOptions& options, const Device& device,
-                       std::vector<double> times)
-    : renderer_(scene, options, device), times_(std::move(times)) {
-    repeat_.seed = options.seed;
+Contestant::Contestant(Renderer renderer, std::vector<double> times, double trial_seconds)
+    : renderer_(std::move(renderer)), times_(std::move(times)) {
+    repeat_.seed = renderer_.options().seed;
+    repeat_.method = renderer_.options().method.name();
+    repeat_.trial_seconds = trial_seconds;
     repeat_.build_seconds = renderer_.statistics().build_kernels_seconds;
 }
 
@@ -83,7 +84,8 @@ void Contestant::save(const std::string& path) const {
     std::memcpy(bytes.data(), pixels.data(), bytes.size());
     const nlohmann::json state{{"seed", repeat_.seed},
                                {"passes", renderer_.statistics().passes},
-                               {"seconds", seconds()},
+                               {"method", repeat_.method},
+                               {"seconds", renderer_.statistics().render_seconds},
                                {"build_seconds", repeat_.build_seconds},
                                {"film", nlohmann::json::binary(std::move(bytes))}};
     replace_file(path, nlohmann::json::to_cbor(state));
@@ -97,7 +99,8 @@ void Contestant::restore(const std::string& path, const Repeat& measured) {
         return state.is_object() ? state.value(name, nlohmann::json()) : nlohmann::json();
     };
     std::vector<FilmPixel> pixels(static_cast<std::size_t>(renderer_.options().region.pixels()));
-    if (member("seed") != repeat_.seed || !member("passes").is_number_unsigned() || !member("seconds").is_number() ||
+    if (member("seed") != repeat_.seed || member("method") != repeat_.method ||
+        !member("passes").is_number_unsigned() || !member("seconds").is_number() ||
         !member("build_seconds").is_number() || !member("film").is_binary() ||
         state["film"].get_binary().size() != pixels.size() * sizeof(FilmPixel))
         fail("cannot go on from \"{}\": it is damaged or of another image", path);

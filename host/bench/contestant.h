@@ -13,8 +13,9 @@ namespace tristim {
 /// One render of a race, and what was measured of it.
 class Contestant {
   public:
-    /// Builds the renderer (see there). `times` are those of the checkpoints, ascending, in seconds of rendering.
-    Contestant(const Scene& scene, const RenderOptions& options, const Device& device, std::vector<double> times);
+    /// `times` are those of the checkpoints, ascending, in seconds of rendering, to which the seconds that went into
+    /// choosing the method count.
+    Contestant(Renderer renderer, std::vector<double> times, double trial_seconds = 0.0);
 
     /// Renders passes, at least one, for at most about `slice` seconds and not beyond the next checkpoint's time.
     void render(double slice);
@@ -24,7 +25,7 @@ class Contestant {
     /// Notes the error against the reference in each region, and goes on to the next checkpoint.
     void measure(const XyzImage& reference, const std::vector<NamedRegion>& regions);
 
-    double seconds() const { return renderer_.statistics().render_seconds; }
+    double seconds() const { return repeat_.trial_seconds + renderer_.statistics().render_seconds; }
     bool finished() const { return repeat_.finished; }
     const Repeat& repeat() const { return repeat_; }
     MemoryUse memory() const;

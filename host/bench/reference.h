@@ -3,8 +3,7 @@
 #include "bench/results.h"
 #include "bench/scene_identity.h"
 #include "image/image.h"
-#include "opencl/device.h"
-#include "render/options.h"
+#include "render/device_scene.h"
 
 #include <array>
 #include <cstdint>
@@ -73,6 +72,11 @@ using ReferenceProgress = std::function<bool(std::uint64_t passes, double second
 /// it is continued, and returned as it is if it has them already. Writes the file at the end, also if `progress` ended
 /// it, and every few minutes before. Throws Error if a file there is no reference of this scene with these options, if
 /// it cannot be written, for --radius statistics, and if `progress` ends it before there is a pass.
+Reference render_reference(DeviceScenes& scenes, const std::string& scene_file, const RenderOptions& options,
+                           const Device& device, double seconds, const std::string& path,
+                           const ReferenceProgress& progress, double seconds_between_writes = 180.0);
+
+/// The same of a scene that nothing else renders.
 Reference render_reference(const Scene& scene, const std::string& scene_file, const RenderOptions& options,
                            const Device& device, double seconds, const std::string& path,
                            const ReferenceProgress& progress, double seconds_between_writes = 180.0);

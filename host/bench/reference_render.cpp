@@ -41,8 +41,8 @@ std::uint64_t next_stop(std::uint64_t passes) {
 /// A render in progress that continues a reference.
 class Continuation {
   public:
-    Continuation(const Scene& scene, const RenderOptions& options, const Device& device, Reference reference)
-        : renderer_(scene, options, device), reference_(std::move(reference)), base_seconds_(reference_.seconds),
+    Continuation(Renderer renderer, Reference reference)
+        : renderer_(std::move(renderer)), reference_(std::move(reference)), base_seconds_(reference_.seconds),
           base_(film(reference_.image.xyz, reference_.passes)) {
         base_.rejected_samples = reference_.rejected_samples;
         if (reference_.passes > 0)
@@ -71,8 +71,11 @@ class Continuation {
             change_turns();
         const std::uint64_t pass = passes_[turn_]++;
         // The radius shrinks with the passes of both halves, as it would in one render.
-        renderer_.render_pass(static_cast<std::uint32_t>(pass), half_seeds(reference_.seed)[turn_],
-                              static_cast<std::uint32_t>(2 * pass + turn_));
+        const std::uint32_t seed = half_seeds(reference_.seed)[turn_];
+        renderer_.render_pass({.pass = static_cast<std::uint32_t>(pass),
+                               .seed = seed,
+                               .radius_pass = static_cast<std::uint32_t>(2 * pass + turn_),
+                               .wavelength_seed = seed});
     }
 
     const Reference& write(const std::string& path) {
@@ -142,7 +145,7 @@ class Continuation {
 
 } // namespace
 
-Reference render_reference(const Scene& scene, const std::string& scene_file, const RenderOptions& options,
+Reference render_reference(DeviceScenes& scenes, const std::string& scene_file, const RenderOptions& options,
                            const Device& device, double seconds, const std::string& path,
                            const ReferenceProgress& progress, double seconds_between_writes) {
     check_options(options);
@@ -155,7 +158,7 @@ Reference render_reference(const Scene& scene, const std::string& scene_file, co
     reference.method = options.method.name();
     reference.seed = options.seed;
     reference.settings = reference_settings(options);
-    reference.identity = scene_identity(scene, options);
+    reference.identity = scene_identity(scenes.scene(), options);
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) {
         Reference existing = read_reference(path);
@@ -166,7 +169,7 @@ Reference render_reference(const Scene& scene, const std::string& scene_file, co
         reference.scene = scene_file;
     }
 
-    Continuation continuation(scene, options, device, std::move(reference));
+    Continuation continuation(Renderer(scenes.get(options, device), options, device), std::move(reference));
     Stopwatch since_write;
     while (continuation.seconds() < seconds && continuation.passes() + 1 < pilot_pass &&
            progress(continuation.passes(), continuation.seconds())) {
@@ -179,6 +182,13 @@ Reference render_reference(const Scene& scene, const std::string& scene_file, co
     if (continuation.passes() == 0)
         fail("interrupted before the first pass was done: no reference written");
     return continuation.write(path);
+}
+
+Reference render_reference(const Scene& scene, const std::string& scene_file, const RenderOptions& options,
+                           const Device& device, double seconds, const std::string& path,
+                           const ReferenceProgress& progress, double seconds_between_writes) {
+    DeviceScenes scenes(scene);
+    return render_reference(scenes, scene_file, options, device, seconds, path, progress, seconds_between_writes);
 }
 
 } // namespace tristim

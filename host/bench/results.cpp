@@ -29,6 +29,8 @@ void fields(Visit& visit, Same<Checkpoint> auto& c) {
 template <typename Visit>
 void fields(Visit& visit, Same<Repeat> auto& r) {
     visit("seed", r.seed);
+    visit("method", r.method);
+    visit("trial_seconds", r.trial_seconds);
     visit("build_seconds", r.build_seconds);
     visit("compare_seconds", r.compare_seconds);
     visit("finished", r.finished);

@@ -28,7 +28,9 @@ struct Checkpoint {
 /// One render, checkpoints in order of time.
 struct Repeat {
     std::uint32_t seed = 0;
-    double build_seconds = 0.0;   ///< kernels and pilot pass, outside of the checkpoints' seconds
+    std::string method;           ///< that rendered it: what auto chose, else the run's own
+    double trial_seconds = 0.0;   ///< of auto's trial passes, part of the checkpoints' seconds
+    double build_seconds = 0.0;   ///< kernels and pilot passes, outside of the checkpoints' seconds
     double compare_seconds = 0.0; ///< reading the film back and comparing it, outside as well
     bool finished = false;        ///< reached the bench's time
     std::vector<Checkpoint> checkpoints;

@@ -81,10 +81,12 @@ VariantGroup method_variants(const std::string& methods, const RenderOptions& ba
         if (at != std::string::npos && sequence != "random" && sequence != "stratified")
             fail("bad sequence '{}' in --methods: expected random or stratified after the @", sequence);
         RenderOptions options = base;
-        options.method = parse_method(word.substr(0, at));
+        options.auto_method = word.substr(0, at) == "auto";
+        if (!options.auto_method)
+            options.method = parse_method(word.substr(0, at));
         if (!sequence.empty())
             options.random_sequence = sequence == "random";
-        const std::string label = options.method.name() + (sequence.empty() ? "" : " " + sequence);
+        const std::string label = method_name(options) + (sequence.empty() ? "" : " " + sequence);
         const bool twice = std::any_of(group.variants.begin(), group.variants.end(), [&](const Variant& other) {
             return options_json(other.options) == options_json(options);
         });
@@ -108,7 +110,7 @@ std::vector<VariantGroup> cost_variants(const RenderOptions& base) {
 }
 
 nlohmann::ordered_json options_json(const RenderOptions& options) {
-    nlohmann::ordered_json json{{"method", options.method.name()},
+    nlohmann::ordered_json json{{"method", method_name(options)},
                                 {"sequence", sequence_name(options)},
                                 {"photons_per_pass", options.photons_per_pass},
                                 {"max_depth", options.max_depth}};

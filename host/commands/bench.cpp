@@ -53,7 +53,7 @@ void check(const BenchCommand& command) {
 
 /// What a bench of this scene renders, devices aside; throws before anything is rendered or built.
 PlannedScene plan(const BenchCommand& command, const std::string& file, const std::vector<Device>& devices) {
-    Scene scene = load_scene(file);
+    Scene scene = load_scene(file, command.arguments.rgb_upsampling);
     RenderArguments arguments = command.arguments;
     arguments.method = command.costs ? "tristimulus:1" : "spectral:400";
     RenderOptions base = resolve_options(arguments, scene);

@@ -76,7 +76,7 @@ Measured measure(Renderer& renderer, RayTracer& closest, RayTracer& any, int rep
 void run(const BenchPassCommand& command) {
     if (command.repeats < 1)
         fail("--repeats must be at least 1");
-    const Scene scene = load_scene(command.arguments.scene);
+    const Scene scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
     const RenderOptions options = resolve_options(command.arguments, scene);
     const Device device = open_device(command.arguments.device);
     // The number of rays hardly changes between passes: those of the middle one serve for all.

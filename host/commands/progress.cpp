@@ -7,7 +7,7 @@
 
 namespace tristim {
 
-Progress::Progress(const Limits& limits, int photons_per_pass, bool quiet)
+Progress::Progress(const RenderBudget& limits, int photons_per_pass, bool quiet)
     : limits_(limits), photons_per_pass_(photons_per_pass), status_(quiet) {}
 
 std::string Progress::line(std::uint64_t passes) const {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "commands/status_line.h"
+#include "render/options.h"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 namespace tristim {
@@ -11,11 +11,7 @@ namespace tristim {
 /// The status line of a render: pass, photons, photons/s, elapsed, remaining.
 class Progress {
   public:
-    struct Limits {
-        std::optional<std::uint64_t> passes;
-        std::optional<double> seconds;
-    };
-    Progress(const Limits& limits, int photons_per_pass, bool quiet);
+    Progress(const RenderBudget& limits, int photons_per_pass, bool quiet);
 
     void update(std::uint64_t passes);
     void finish(std::uint64_t passes);
@@ -24,7 +20,7 @@ class Progress {
   private:
     std::string line(std::uint64_t passes) const;
 
-    Limits limits_;
+    RenderBudget limits_;
     int photons_per_pass_;
     StatusLine status_;
 };

@@ -38,7 +38,7 @@ void run(const ReferenceCommand& command) {
     if (!command.out.ends_with(".exr"))
         fail("cannot write \"{}\": a reference is an .exr file", command.out);
     check_writable(command.out);
-    const Scene scene = load_scene(command.arguments.scene);
+    const Scene scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
     RenderOptions options = resolve_options(command.arguments, scene);
     options.seed = command.arguments.seed.value_or(reference_seed);
     if (!command.quiet)
@@ -53,7 +53,7 @@ void run(const ReferenceCommand& command) {
             if (passes > 0 && !command.quiet)
                 fmt::print(stderr, "continuing {}: {} passes, {:.1f} s\n", command.out, passes, seconds);
             before = passes;
-            bar.emplace(Progress::Limits{{}, command.seconds - seconds}, options.photons_per_pass, command.quiet);
+            bar.emplace(RenderBudget{{}, command.seconds - seconds}, options.photons_per_pass, command.quiet);
         }
         bar->update(passes - before);
         return !interrupted();

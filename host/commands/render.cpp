@@ -8,6 +8,7 @@
 #include "commands/render_arguments.h"
 #include "image/output_file.h"
 #include "image/write_image.h"
+#include "render/choose_method.h"
 #include "render/image_metadata.h"
 #include "render/pilot.h"
 #include "render/renderer.h"
@@ -39,7 +40,7 @@ bool is_exr(const std::string& path) {
     return ::strcasecmp(std::filesystem::path(path).extension().c_str(), ".exr") == 0;
 }
 
-Progress::Limits limits(const RenderCommand& command, const Scene& scene) {
+RenderBudget limits(const RenderCommand& command, const Scene& scene) {
     if (command.seconds)
         check_seconds(*command.seconds, "--time");
     if (!std::isfinite(command.exposure))
@@ -50,7 +51,7 @@ Progress::Limits limits(const RenderCommand& command, const Scene& scene) {
 }
 
 /// Renders passes until a limit is reached or the user interrupts; how many were done.
-std::uint64_t render_passes(Renderer& renderer, const Progress::Limits& limits, bool quiet) {
+std::uint64_t render_passes(Renderer& renderer, const RenderBudget& limits, bool quiet) {
     Progress progress(limits, renderer.options().photons_per_pass, quiet);
     std::uint64_t done = 0;
     const std::uint64_t most = std::min<std::uint64_t>(limits.passes.value_or(pilot_pass), pilot_pass);
@@ -62,12 +63,22 @@ std::uint64_t render_passes(Renderer& renderer, const Progress::Limits& limits, 
     return done;
 }
 
+/// --method auto: fills in the method, and says which and why.
+void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const RenderBudget& budget,
+            bool quiet, RenderOptions& options) {
+    const MethodChoice choice = choose_method(scene, options, device, budget);
+    options.method = choice.method;
+    options.auto_method = false;
+    if (!quiet)
+        fmt::print(stderr, "{}", describe(choice, options.random_sequence));
+}
+
 void run(RenderCommand& command) {
     const Stopwatch loading;
-    const Scene scene = load_scene(command.arguments.scene);
+    const Scene scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
     const double load_seconds = loading.seconds();
-    const RenderOptions options = resolve_options(command.arguments, scene);
-    const Progress::Limits stop = limits(command, scene);
+    RenderOptions options = resolve_options(command.arguments, scene);
+    const RenderBudget stop = limits(command, scene);
     if (command.outfiles.empty())
         command.outfiles.push_back(scene.settings.filename);
     for (const std::string& path : command.outfiles)
@@ -79,7 +90,10 @@ void run(RenderCommand& command) {
 
     catch_interrupts();
     const Device device = open_device(command.arguments.device);
-    Renderer renderer(scene, options, device);
+    const auto device_scene = std::make_shared<const DeviceScene>(scene, options, device);
+    if (options.auto_method)
+        choose(device_scene, device, stop, command.quiet, options);
+    Renderer renderer(device_scene, options, device);
     const std::uint64_t passes = render_passes(renderer, stop, command.quiet);
     if (passes == 0)
         fail("interrupted before the first pass was done: no image written");
@@ -115,6 +129,7 @@ void run(RenderCommand& command) {
 
 void add_render_command(CLI::App& app) {
     auto command = std::make_shared<RenderCommand>();
+    command->arguments.accepts_auto = true;
     CLI::App* sub = app.add_subcommand("render", "Render a scene to EXR and PNG images");
     add_render_arguments(*sub, command->arguments);
     sub->add_option("--outfile", command->outfiles, "Image to write, may be repeated [the scene's film filename]")

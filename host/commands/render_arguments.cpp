@@ -4,6 +4,7 @@
 #include "base/region.h"
 #include "commands/device_options.h"
 #include "commands/parse.h"
+#include "spectra/rgb_upsampling.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -26,7 +27,10 @@ std::optional<double> parse_initial_radius(const std::string& text) {
 
 void add_render_arguments(CLI::App& command, RenderArguments& a) {
     command.add_option("scene", a.scene, "Scene file (pbrt-v4 syntax)")->required()->type_name("SCENE");
-    command.add_option("--method", a.method, "Wavelengths: tristimulus:N (N sets of three), spectral:400 or rgb")
+    command
+        .add_option("--method", a.method,
+                    a.accepts_auto ? "How wavelengths are chosen, see `tristim methods`; auto finds out by trying"
+                                   : "How wavelengths are chosen, see `tristim methods`")
         ->capture_default_str();
     add_render_settings(command, a);
     add_device_option(command, a.device);
@@ -70,12 +74,21 @@ void add_render_settings(CLI::App& command, RenderArguments& a) {
                     "GGX roughness (alpha) from which on surfaces take photons; camera paths go on at smoother ones")
         ->type_name("ALPHA")
         ->capture_default_str();
+    command
+        .add_option_function<std::string>(
+            "--rgb-upsampling", [&a](const std::string& name) { a.rgb_upsampling = parse_rgb_upsampling(name); },
+            "Spectra of RGB colours: jakob-hanika (2019), or meng (2015) [scene, else jakob-hanika]")
+        ->check(CLI::IsMember(rgb_upsampling_names()));
     add_math_option(command, a.math);
 }
 
 RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
     RenderOptions options = options_from_scene(scene.settings);
-    options.method = parse_method(a.method);
+    options.auto_method = a.method == "auto";
+    if (options.auto_method && !a.accepts_auto)
+        fail("--method auto is for render and bench: name a method here");
+    if (!options.auto_method)
+        options.method = parse_method(a.method);
     options.random_sequence = a.sequence == "random";
     if (!a.resolution.empty()) {
         const auto [width, height] = parse_resolution(a.resolution, {options.width, options.height});

@@ -13,6 +13,7 @@ namespace tristim {
 struct RenderArguments {
     std::string scene;
     std::string method = "tristimulus:1";
+    bool accepts_auto = false; ///< whether --method may be auto
     std::string sequence = "stratified";
     std::string resolution;
     std::string region;
@@ -28,6 +29,7 @@ struct RenderArguments {
     std::optional<int> photons;
     std::optional<int> max_depth;
     std::optional<std::uint32_t> seed;
+    std::optional<RgbUpsampling> rgb_upsampling;
 };
 
 /// Registers SCENE, --method and the options.

@@ -18,6 +18,10 @@ RenderOptions options_from_scene(const RenderSettings& settings) {
     return options;
 }
 
+std::string method_name(const RenderOptions& options) {
+    return options.auto_method ? "auto" : options.method.name();
+}
+
 std::string sequence_name(const RenderOptions& options) {
     return options.random_sequence ? "random" : "stratified";
 }

@@ -15,6 +15,7 @@ namespace tristim {
 /// How a scene is rendered; the scene's own settings fill what the user leaves open (resolve_options).
 struct RenderOptions {
     Method method;
+    bool auto_method = false;     ///< the method is still to be chosen (render/choose_method.h)
     bool random_sequence = false; ///< the paper's plain random wavelengths instead of the stratified sequence
     int width = 0;
     int height = 0;
@@ -33,11 +34,20 @@ struct RenderOptions {
     bool record_rays = false; ///< keep every ray of the last pass, for bench-pass
 };
 
+/// How long a render is to be: the limit that is reached first ends it.
+struct RenderBudget {
+    std::optional<std::uint64_t> passes;
+    std::optional<double> seconds;
+};
+
 inline constexpr int default_photons_per_pass = 65536;
 inline constexpr int default_max_depth = 16;
 
 /// Options with the scene's own resolution, photons, depth, radius and seed.
 RenderOptions options_from_scene(const RenderSettings& settings);
+
+/// The method's name, or "auto".
+std::string method_name(const RenderOptions& options);
 
 /// The wavelength sequence as --sequence takes it: "random" or "stratified".
 std::string sequence_name(const RenderOptions& options);

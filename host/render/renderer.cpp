@@ -6,6 +6,7 @@
 #include "opencl/errors.h"
 #include "render/pilot.h"
 #include "render/radius_schedule.h"
+#include "render/sampler_table.h"
 #include "render/work_groups.h"
 
 #include <algorithm>
@@ -51,14 +52,21 @@ std::size_t rays_to_record(const RenderOptions& options) {
 } // namespace
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Device& device)
-    : device_(device), options_(options), effects_(derive_effects(scene, options.photon_roughness)),
-      layout_(wavelength_layout(options.method)), seed_(options.seed) {
-    check_options(options);
-    const FlatScene flat = flatten_scene(scene, effects_, options.width, options.height, options.region);
-    scene_buffers_ = SceneBuffers(device, flat, rays_to_record(options));
-    statistics_.bvh_seconds = scene_buffers_.bvh_seconds();
+    : Renderer(std::make_shared<const DeviceScene>(scene, options, device), options, device) {}
 
-    sampler_table_ = Buffer<float>(device, "wavelength sampler", sampler_table(options.method));
+Renderer::Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions& options, const Device& device)
+    : device_(device), options_(options), scene_(std::move(scene)), layout_(wavelength_layout(options.method)) {
+    if (options.auto_method)
+        fail("a method must be named here: auto is for render and bench");
+    check_options(options);
+    if (const std::string mismatch = scene_->mismatch(options, device); !mismatch.empty())
+        fail("the scene is on the device for renders of another {}", mismatch);
+    const FlatScene& flat = scene_->flat();
+    const Effects& effects = scene_->effects();
+    recorder_ = RayRecorder(device, rays_to_record(options));
+    statistics_.bvh_seconds = scene_->buffers().bvh_seconds();
+
+    sampler_table_ = Buffer<float>(device, "wavelength sampler", sampler_table(options.method, flat.emission));
     spectra_ = Buffer<float>(device, "spectra", flat.spectra.values(options.method));
     spectrum_is_smooth_ = Buffer<std::int32_t>(device, "spectrum kinds", flat.spectra.smooth());
     spectrum_rows_ = flat.spectra.rows();
@@ -72,8 +80,8 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
     const auto pixels = static_cast<std::size_t>(options.region.pixels());
     radius0_ = Buffer<float>(device, "initial radii", pixels);
     visible_points_ = Buffer<VisiblePoint>(device, "visible points", pixels);
-    visible_surfaces_ = Buffer<VisibleSurface>(device, "visible surfaces", effects_.rough_photons ? pixels : 0);
-    eye_spectra_ = Buffer<float>(device, "throughput spectra", has_coloured_eye(effects_) ? pixels * padded : 0);
+    visible_surfaces_ = Buffer<VisibleSurface>(device, "visible surfaces", effects.rough_photons ? pixels : 0);
+    eye_spectra_ = Buffer<float>(device, "throughput spectra", has_coloured_eye(effects) ? pixels * padded : 0);
     largest_radius_ = Buffer<std::uint32_t>(device, "largest radius", 1);
     gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
     film_ = Buffer<FilmPixel>(device, "film", pixels);
@@ -91,7 +99,7 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, const Devic
 }
 
 void Renderer::build_kernels() {
-    const Macros macros = common_macros(options_, effects_, scene_buffers_.bvh());
+    const Macros macros = common_macros(options_, effects(), bvh());
     const BuildOptions build{options_.fast_math, options_.dump_kernels};
     const auto kernel = [&](const char* file, const char* name) {
         return ::cl::Kernel(build_program(device_, file, macros, build), name);
@@ -113,14 +121,14 @@ void Renderer::build_kernels() {
 void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     capacity_per_item_ = std::max(capacity_per_item, 1U);
     const std::size_t photons = std::size_t{photon_items_} * capacity_per_item_;
-    const bool store_spectra = stores_spectral_flux(effects_);
+    const bool store_spectra = stores_spectral_flux(effects());
     const std::size_t floats = store_spectra ? photons * static_cast<std::size_t>(layout_.padded()) : 0;
     photons_ = Buffer<Photon>(device_, "photons", photons);
-    photon_surfaces_ = Buffer<PhotonSurface>(device_, "photon surfaces", effects_.rough_photons ? photons : 0);
+    photon_surfaces_ = Buffer<PhotonSurface>(device_, "photon surfaces", effects().rough_photons ? photons : 0);
     photon_spectra_ = Buffer<float>(device_, "photon spectra", floats);
     sorter_.allocate(device_, photon_items_, capacity_per_item_);
 
-    statistics_.buffer_bytes = scene_buffers_.sizes();
+    statistics_.buffer_bytes = scene_->buffers().sizes();
     const auto add = [this](const auto& buffer) {
         statistics_.buffer_bytes.emplace_back(buffer.name(), buffer.bytes());
         return std::uint64_t{buffer.bytes()};
@@ -137,7 +145,7 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
         statistics_.photon_bytes += size.second;
     }
     statistics_.bytes_per_photon = static_cast<double>(sizeof(Photon) + 2 * sizeof(cl_uint2)) +
-                                   (effects_.rough_photons ? static_cast<double>(sizeof(PhotonSurface)) : 0.0) +
+                                   (effects().rough_photons ? static_cast<double>(sizeof(PhotonSurface)) : 0.0) +
                                    (store_spectra ? static_cast<double>(sizeof(float)) * layout_.padded() : 0.0);
 }
 
@@ -145,24 +153,32 @@ void Renderer::run_pilot() {
     largest_radius0_ = static_cast<float>(options_.radius.value_or(1.0) * options_.radius_factor);
     radius0_.fill(device_, largest_radius0_);
     clear_film();
-    fill_wavelengths(pilot_pass);
-    trace_eye_paths(pilot_pass, 1.0F);
-    trace_photons(pilot_pass);
+    const PassSeeds seeds{pilot_pass, options_.seed, 0, options_.seed};
+    fill_wavelengths(seeds);
+    trace_eye_paths(seeds, 1.0F);
+    trace_photons(seeds);
     if (!options_.radius) {
         std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
         for (float& radius : radii)
             radius *= static_cast<float>(options_.radius_factor);
         radius0_.write(device_, radii);
         largest_radius0_ = *std::max_element(radii.begin(), radii.end());
-        trace_eye_paths(pilot_pass, 1.0F); // visible points hold radii
+        trace_eye_paths(seeds, 1.0F); // visible points hold radii
     }
     sort_photons();
     gather_photons();
     add_to_film();
+    reset();
+}
+
+void Renderer::reset() {
     clear_film();
     collect_times();
     statistics_.step_seconds = {};
+    statistics_.passes = 0;
+    statistics_.photons_emitted = 0;
     statistics_.photons_stored = 0;
+    statistics_.render_seconds = 0.0;
 }
 
 void Renderer::clear_film() {
@@ -172,14 +188,13 @@ void Renderer::clear_film() {
     enqueue(Step::Film, film_clear_, film_.size(), pixel_group);
 }
 
-void Renderer::render_pass(std::uint32_t pass, std::uint32_t seed, std::uint32_t radius_pass) {
+void Renderer::render_pass(const PassSeeds& seeds) {
     const Stopwatch stopwatch;
-    seed_ = seed;
     if (options_.record_rays)
-        scene_buffers_.clear_recorded_rays(device_);
-    fill_wavelengths(pass);
-    trace_eye_paths(pass, static_cast<float>(radius_scale(radius_pass, options_.alpha)));
-    trace_photons(pass);
+        recorder_.clear(device_);
+    fill_wavelengths(seeds);
+    trace_eye_paths(seeds, static_cast<float>(radius_scale(seeds.radius_pass, options_.alpha)));
+    trace_photons(seeds);
     sort_photons();
     gather_photons();
     add_to_film();
@@ -189,10 +204,10 @@ void Renderer::render_pass(std::uint32_t pass, std::uint32_t seed, std::uint32_t
     statistics_.render_seconds += stopwatch.seconds();
 }
 
-void Renderer::fill_wavelengths(std::uint32_t pass) {
+void Renderer::fill_wavelengths(const PassSeeds& seeds) {
     cl_uint argument = 0;
-    wavelengths_.setArg(argument++, seed_);
-    wavelengths_.setArg(argument++, pass);
+    wavelengths_.setArg(argument++, seeds.wavelength_seed);
+    wavelengths_.setArg(argument++, seeds.pass);
     wavelengths_.setArg(argument++, sampler_table_.cl());
     wavelengths_.setArg(argument++, spectra_.cl());
     wavelengths_.setArg(argument++, spectrum_is_smooth_.cl());
@@ -202,19 +217,19 @@ void Renderer::fill_wavelengths(std::uint32_t pass) {
     enqueue(Step::Wavelengths, wavelengths_, wavelengths, std::min(wavelengths, pixel_group));
     if (film_table_rows_ == 0)
         return;
-    film_tables_.setArg(0, scene_buffers_.materials().cl());
-    film_tables_.setArg(1, scene_buffers_.film_layers().cl());
+    film_tables_.setArg(0, scene_->buffers().materials().cl());
+    film_tables_.setArg(1, scene_->buffers().film_layers().cl());
     film_tables_.setArg(2, film_table_rows_);
     film_tables_.setArg(3, pass_table_.cl());
     const std::size_t items = static_cast<std::size_t>(layout_.blocks) * static_cast<std::size_t>(film_table_rows_) *
-                              scene_buffers_.materials().size();
+                              scene_->buffers().materials().size();
     enqueue(Step::Wavelengths, film_tables_, items, 1);
 }
 
-void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
-    cl_uint argument = scene_buffers_.bind(eye_pass_, pass_table_);
-    eye_pass_.setArg(argument++, seed_);
-    eye_pass_.setArg(argument++, pass);
+void Renderer::trace_eye_paths(const PassSeeds& seeds, float scale) {
+    cl_uint argument = scene_->buffers().bind(eye_pass_, pass_table_, recorder_);
+    eye_pass_.setArg(argument++, seeds.seed);
+    eye_pass_.setArg(argument++, seeds.pass);
     eye_pass_.setArg(argument++, radius0_.cl());
     eye_pass_.setArg(argument++, scale);
     eye_pass_.setArg(argument++, film_.cl());
@@ -233,11 +248,11 @@ void Renderer::trace_eye_paths(std::uint32_t pass, float scale) {
     enqueue(Step::EyePass, film_largest_radius_, visible_points_.size(), pixel_group);
 }
 
-void Renderer::trace_photons(std::uint32_t pass) {
+void Renderer::trace_photons(const PassSeeds& seeds) {
     for (;;) {
-        cl_uint argument = scene_buffers_.bind(photon_pass_, pass_table_);
-        photon_pass_.setArg(argument++, seed_);
-        photon_pass_.setArg(argument++, pass);
+        cl_uint argument = scene_->buffers().bind(photon_pass_, pass_table_, recorder_);
+        photon_pass_.setArg(argument++, seeds.seed);
+        photon_pass_.setArg(argument++, seeds.pass);
         photon_pass_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
         photon_pass_.setArg(argument++, capacity_per_item_);
         photon_pass_.setArg(argument++, photons_.cl());
@@ -257,19 +272,19 @@ void Renderer::trace_photons(std::uint32_t pass) {
 
 void Renderer::sort_photons() {
     statistics_.photons_stored += photon_count_;
-    sorter_.sort(scene_buffers_.constants(), photons_, largest_radius_, enqueue_grid());
+    sorter_.sort(scene_->buffers().constants(), photons_, largest_radius_, enqueue_grid());
 }
 
 void Renderer::gather_photons() {
     cl_uint argument = 0;
-    for (const ::cl::Buffer* buffer : {&scene_buffers_.constants().cl(), &pass_table_.cl(), &visible_points_.cl(),
+    for (const ::cl::Buffer* buffer : {&scene_->buffers().constants().cl(), &pass_table_.cl(), &visible_points_.cl(),
                                        &eye_spectra_.cl(), &photons_.cl(), &photon_spectra_.cl(), &sorter_.pairs().cl(),
                                        &sorter_.bucket_begin().cl(), &largest_radius_.cl()})
         gather_.setArg(argument++, *buffer);
     gather_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
     for (const ::cl::Buffer* buffer :
-         {&visible_surfaces_.cl(), &photon_surfaces_.cl(), &scene_buffers_.materials().cl(),
-          &scene_buffers_.film_layers().cl(), &gathered_flux_.cl()})
+         {&visible_surfaces_.cl(), &photon_surfaces_.cl(), &scene_->buffers().materials().cl(),
+          &scene_->buffers().film_layers().cl(), &gathered_flux_.cl()})
         gather_.setArg(argument++, *buffer);
     enqueue(Step::Gather, gather_, visible_points_.size(), pixel_group);
 }
@@ -332,10 +347,6 @@ RayTotals Renderer::rays() const {
 
 FilmImage Renderer::film() const {
     return develop_film(film_.read(device_), options_.width, options_.height, options_.region);
-}
-
-std::vector<Ray> Renderer::recorded_rays() const {
-    return scene_buffers_.recorded_rays(device_);
 }
 
 std::vector<Photon> Renderer::photons() const {

@@ -1,33 +1,46 @@
 #pragma once
 
 #include "opencl/buffer.h"
-#include "render/effects.h"
+#include "render/device_scene.h"
 #include "render/film.h"
-#include "render/options.h"
 #include "render/photon_sorter.h"
-#include "render/scene_buffers.h"
+#include "render/ray_recorder.h"
 #include "render/statistics.h"
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace tristim {
+
+/// What the random numbers of a pass come from: its wavelengths depend on `wavelength_seed` and `pass`, its paths on
+/// `seed` and `pass`. It searches with the radius of pass `radius_pass`.
+struct PassSeeds {
+    std::uint32_t pass = 0;
+    std::uint32_t seed = 0;
+    std::uint32_t radius_pass = 0;
+    std::uint32_t wavelength_seed = 0;
+};
 
 /// Renders passes of a scene on a device. The image is the mean of the passes, each of which depends on the scene, the
 /// options and its number alone, so any passes may be rendered in any order (with --radius statistics: in ascending
 /// order from 0, since radii then depend on the passes before).
 class Renderer {
   public:
-    /// Builds tree, buffers and kernels, and runs a pilot pass, which makes drivers compile what they compile at the
+    /// Builds buffers and kernels, and runs a pilot pass, which makes drivers compile what they compile at the
     /// first launch and measures initial radii if the options give none. Throws Error if the options cannot be
-    /// rendered, a kernel does not build or the device has too little memory.
+    /// rendered or the scene was made for others, a kernel does not build or the device has too little memory.
+    Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions& options, const Device& device);
+
+    /// Puts the scene on the device for this renderer alone.
     Renderer(const Scene& scene, const RenderOptions& options, const Device& device);
 
-    void render_pass(std::uint32_t pass) { render_pass(pass, options_.seed, pass); }
+    void render_pass(std::uint32_t pass) { render_pass({pass, options_.seed, pass, options_.seed}); }
+    void render_pass(const PassSeeds& seeds);
 
-    /// The same pass of another seed, with the search radius of pass `radius_pass`.
-    void render_pass(std::uint32_t pass, std::uint32_t seed, std::uint32_t radius_pass);
+    /// Forgets all passes.
+    void reset();
 
     FilmImage film() const;
 
@@ -42,12 +55,12 @@ class Renderer {
 
     const RenderStatistics& statistics() const { return statistics_; }
     const RenderOptions& options() const { return options_; }
-    const Effects& effects() const { return effects_; }
+    const Effects& effects() const { return scene_->effects(); }
     const Device& device() const { return device_; }
-    const Bvh& bvh() const { return scene_buffers_.bvh(); }
+    const Bvh& bvh() const { return scene_->buffers().bvh(); }
 
     /// The rays of the last pass, nearest-hit ones and shadow rays (Ray::unused = 1), if options().record_rays.
-    std::vector<Ray> recorded_rays() const;
+    std::vector<Ray> recorded_rays() const { return recorder_.read(device_); }
 
     /// The pass's data as the kernels left them, for tests.
     std::vector<VisiblePoint> visible_points() const { return visible_points_.read(device_); }
@@ -61,9 +74,9 @@ class Renderer {
     void run_pilot();
     void clear_film();
 
-    void fill_wavelengths(std::uint32_t pass);
-    void trace_eye_paths(std::uint32_t pass, float scale);
-    void trace_photons(std::uint32_t pass);
+    void fill_wavelengths(const PassSeeds& seeds);
+    void trace_eye_paths(const PassSeeds& seeds, float scale);
+    void trace_photons(const PassSeeds& seeds);
     void sort_photons();
     void gather_photons();
     void add_to_film();
@@ -74,9 +87,9 @@ class Renderer {
 
     Device device_;
     RenderOptions options_;
-    Effects effects_;
+    std::shared_ptr<const DeviceScene> scene_;
     WavelengthLayout layout_;
-    SceneBuffers scene_buffers_;
+    RayRecorder recorder_;
     RenderStatistics statistics_;
     std::vector<std::pair<Step, ::cl::Event>> events_;
 
@@ -87,7 +100,6 @@ class Renderer {
     int film_table_rows_ = 0; ///< of the material that has most
     Buffer<float> pass_table_;
 
-    std::uint32_t seed_ = 0; ///< of the pass
     Buffer<float> radius0_;
     float largest_radius0_ = 0.0F;
     Buffer<VisiblePoint> visible_points_;

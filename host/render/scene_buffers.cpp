@@ -3,11 +3,9 @@
 #include "base/stopwatch.h"
 #include "render/sobol.h"
 
-#include <algorithm>
-
 namespace tristim {
 
-SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::size_t recorded_rays) {
+SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene) {
     const Stopwatch stopwatch;
     bvh_ = build_bvh(scene.soup);
     bvh_seconds_ = stopwatch.seconds();
@@ -23,28 +21,16 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene, std::si
     lights_ = Buffer<SceneLight>(device, "lights", scene.lights);
     light_cdf_ = Buffer<float>(device, "light CDF", scene.light_cdf);
     sobol_table_ = Buffer<std::uint32_t>(device, "Sobol' table", sobol_table());
-    recorded_rays_ = Buffer<Ray>(device, "recorded rays", recorded_rays);
-    recorded_count_ = Buffer<std::uint32_t>(device, "recorded ray counts", 2);
-    clear_recorded_rays(device);
 }
 
-cl_uint SceneBuffers::bind(::cl::Kernel& kernel, const Buffer<float>& pass_table) const {
+cl_uint SceneBuffers::bind(::cl::Kernel& kernel, const Buffer<float>& pass_table, const RayRecorder& recorder) const {
     cl_uint index = 0;
     for (const ::cl::Buffer* buffer :
          {&constants_.cl(), &nodes_.cl(), &leaves_.cl(), &triangles_.cl(), &attributes_.cl(), &materials_.cl(),
           &film_layers_.cl(), &textures_.cl(), &texels_.cl(), &lights_.cl(), &light_cdf_.cl(), &pass_table.cl(),
-          &sobol_table_.cl(), &recorded_rays_.cl(), &recorded_count_.cl()})
+          &sobol_table_.cl(), &recorder.rays().cl(), &recorder.count().cl()})
         kernel.setArg(index++, *buffer);
     return index;
-}
-
-void SceneBuffers::clear_recorded_rays(const Device& device) const {
-    recorded_count_.write(device, {0U, static_cast<std::uint32_t>(recorded_rays_.size())});
-}
-
-std::vector<Ray> SceneBuffers::recorded_rays(const Device& device) const {
-    const std::size_t count = recorded_count_.read(device)[0];
-    return recorded_rays_.read(device, std::min(count, recorded_rays_.size()));
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> SceneBuffers::sizes() const {

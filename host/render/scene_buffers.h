@@ -3,6 +3,7 @@
 #include "bvh/bvh.h"
 #include "opencl/buffer.h"
 #include "render/flat_scene.h"
+#include "render/ray_recorder.h"
 
 #include <cstdint>
 #include <utility>
@@ -10,26 +11,23 @@
 
 namespace tristim {
 
-/// A scene on a device: the buffers behind SCENE_PARAMETERS of kernels/scene.h.
+/// A scene on a device: the buffers behind SCENE_PARAMETERS of kernels/scene.h, which kernels only read.
 class SceneBuffers {
   public:
     SceneBuffers() = default;
 
-    /// Builds the tree and uploads everything. `recorded_rays` is how many rays can be recorded, 0 for none.
-    SceneBuffers(const Device& device, const FlatScene& scene, std::size_t recorded_rays);
+    /// Builds the tree and uploads everything.
+    SceneBuffers(const Device& device, const FlatScene& scene);
 
-    /// Sets the kernel's first arguments, the scene, and returns the index of the next one.
-    cl_uint bind(::cl::Kernel& kernel, const Buffer<float>& pass_table) const;
+    /// Sets the kernel's first arguments, the scene and where a render keeps its spectra and rays, and returns the
+    /// index of the next one.
+    cl_uint bind(::cl::Kernel& kernel, const Buffer<float>& pass_table, const RayRecorder& recorder) const;
 
     const Bvh& bvh() const { return bvh_; }
     double bvh_seconds() const { return bvh_seconds_; }
     const Buffer<SceneConstants>& constants() const { return constants_; }
     const Buffer<SurfaceMaterial>& materials() const { return materials_; }
     const Buffer<SceneFilmLayer>& film_layers() const { return film_layers_; }
-
-    /// Forgets recorded rays; the rays recorded since.
-    void clear_recorded_rays(const Device& device) const;
-    std::vector<Ray> recorded_rays(const Device& device) const;
 
     std::vector<std::pair<std::string, std::uint64_t>> sizes() const;
 
@@ -48,8 +46,6 @@ class SceneBuffers {
     Buffer<SceneLight> lights_;
     Buffer<float> light_cdf_;
     Buffer<std::uint32_t> sobol_table_;
-    Buffer<Ray> recorded_rays_;
-    Buffer<std::uint32_t> recorded_count_;
 };
 
 } // namespace tristim

@@ -1,0 +1,35 @@
+#include "commands/methods.h"
+
+#include "render/method.h"
+
+#include <fmt/core.h>
+
+namespace tristim {
+namespace {
+
+void run() {
+    constexpr const char* line = "{:<22}{:<10}{:<10}{}\n";
+    fmt::print(line, "method", "W", "exact", "how the W wavelengths of a pass are chosen");
+    for (const MethodKind& kind : method_kinds()) {
+        const std::string count = kind.count_name == nullptr ? "" : kind.count_name;
+        const bool fixed = kind.least == kind.most;
+        std::string w = fixed ? std::to_string(kind.most * kind.wavelengths) : count;
+        if (kind.wavelengths != 1)
+            w = fmt::format("{} {}", kind.wavelengths, count);
+        fmt::print(line, pattern(kind), w, kind.unbiased ? "yes" : "biased",
+                   fmt::format("{} ({})", kind.summary, kind.source));
+        if (!fixed)
+            fmt::print(line, "", "", "", fmt::format("{} from {} to {}", count, kind.least, kind.most));
+    }
+    fmt::print(line, "auto", "", "yes", "tries a few passes of several methods on the scene, and takes the best");
+    fmt::print("Each with --sequence stratified, within a pass and over the passes, or random as in the paper. Exact: "
+               "passes average to the XYZ of every spectrum.\n");
+}
+
+} // namespace
+
+void add_methods_command(CLI::App& app) {
+    app.add_subcommand("methods", "List the methods of choosing wavelengths that --method takes")->callback(run);
+}
+
+} // namespace tristim

@@ -1,0 +1,189 @@
+#include "render/choose_method.h"
+
+#include "base/error.h"
+#include "image/image.h"
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// What is tried. Where the light is known, no pdf for one wavelength that serves X, Y and Z has much less variance than
+// (x̄ + ȳ + z̄) S, and wavelengths at equal distances in its CDF vary less the more there are; so illuminant-mixture:C is
+// tried with C as wide as the narrowest vectors, and with twice as many as long as that lowers the predicted error.
+// Paths that a dispersive surface leaves with one of C wavelengths may lose by a larger C: then one wavelength is tried
+// too. Samplers that do not know the light are not: a trial of a few wavelengths that miss the lines of a lamp would
+// take its darkness for a lack of variance.
+
+namespace tristim {
+namespace {
+
+constexpr int narrowest = 4; ///< a vector's lanes: fewer wavelengths take the same time
+constexpr int widest = 64;
+/// Sets of wavelengths that a trial sees, each with two sets of paths; more where a set is a single wavelength.
+constexpr int least_sets = 2;
+/// Search radii are those of the middle of the render, but not of a later pass than this: they hardly shrink from
+/// there.
+constexpr double last_typical_pass = 1000.0;
+/// By how much more wavelengths must lower the predicted error to be worth a further trial.
+constexpr double worthwhile = 0.99;
+
+/// The variances of pairs of images: each pair has wavelengths of its own, the two of a pair different paths.
+class Pairs {
+  public:
+    using Image = std::vector<std::array<float, 3>>;
+
+    void add(const Image& first, const Image& second) {
+        sums_.resize(first.size());
+        for (std::size_t i = 0; i < first.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double a = first[i][c];
+                const double b = second[i][c];
+                squares_ += 0.5 * (a - b) * (a - b);
+                products_ += a * b;
+                sums_[i][c][0] += a;
+                sums_[i][c][1] += b;
+            }
+        }
+        ++pairs_;
+    }
+
+    /// Of images with the same wavelengths, the mean over wavelengths, pixels and channels.
+    double path_variance() const { return squares_ / (values() * pairs_); }
+
+    /// Of what images of the same wavelengths average to: the covariance of first and second images, whose paths are
+    /// independent. Clamped at zero, below which it may fall by chance.
+    double wavelength_variance() const {
+        double of_sums = 0.0;
+        for (const auto& pixel : sums_) {
+            for (const auto& [a, b] : pixel)
+                of_sums += a * b;
+        }
+        return std::max(0.0, (products_ - of_sums / pairs_) / (values() * (pairs_ - 1.0)));
+    }
+
+  private:
+    double values() const { return 3.0 * static_cast<double>(sums_.size()); }
+
+    std::vector<std::array<std::array<double, 2>, 3>> sums_; ///< per pixel and channel, of first and second images
+    double squares_ = 0.0;
+    double products_ = 0.0;
+    double pairs_ = 0.0;
+};
+
+class Trials {
+  public:
+    Trials(std::shared_ptr<const DeviceScene> scene, const RenderOptions& options, const Device& device,
+           const RenderBudget& budget)
+        : scene_(std::move(scene)), options_(options), device_(device), budget_(budget) {
+        options_.auto_method = false;
+    }
+
+    /// Tries the method and notes it; its predicted error.
+    double operator()(const Method& method) {
+        options_.method = method;
+        Renderer renderer(scene_, options_, device_);
+        if (choice.trials.empty())
+            fix_budget(renderer);
+        choice.trials.push_back(measure(renderer));
+        return error(choice.trials.back());
+    }
+
+    double error(const MethodTrial& trial) const {
+        return trial.error_after(choice.budget_seconds / trial.pass_seconds, options_.random_sequence);
+    }
+
+    MethodChoice choice;
+
+  private:
+    /// Seconds of the whole render, and the pass whose search radius is typical of it, from a first pass.
+    void fix_budget(Renderer& renderer) {
+        renderer.render_pass(0);
+        const double pass_seconds = renderer.statistics().render_seconds;
+        choice.seconds += pass_seconds;
+        choice.budget_seconds = budget_.seconds.value_or(std::numeric_limits<double>::infinity());
+        if (budget_.passes)
+            choice.budget_seconds =
+                std::min(choice.budget_seconds, static_cast<double>(*budget_.passes) * pass_seconds);
+        typical_pass_ =
+            static_cast<std::uint32_t>(std::min(0.5 * choice.budget_seconds / pass_seconds, last_typical_pass));
+    }
+
+    MethodTrial measure(Renderer& renderer) {
+        MethodTrial trial{renderer.options().method, 0.0, 0.0, std::numeric_limits<double>::infinity()};
+        const auto image = [&](std::uint32_t set, std::uint32_t seed) {
+            renderer.reset();
+            renderer.render_pass({set, seed, typical_pass_, options_.seed});
+            const double seconds = renderer.statistics().render_seconds;
+            trial.pass_seconds = std::min(trial.pass_seconds, seconds);
+            choice.seconds += seconds;
+            return xyz_image(renderer.film()).xyz;
+        };
+        const int sets = std::max(least_sets, narrowest / trial.method.wavelengths());
+        Pairs pairs;
+        // The paths' seeds are those of no repeat of a bench: they count down from the complement.
+        for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(sets); ++set)
+            pairs.add(image(set, ~options_.seed), image(set, ~options_.seed - 1));
+        trial.path_variance = pairs.path_variance();
+        trial.wavelength_variance = pairs.wavelength_variance();
+        return trial;
+    }
+
+    std::shared_ptr<const DeviceScene> scene_;
+    RenderOptions options_;
+    const Device& device_;
+    RenderBudget budget_;
+    std::uint32_t typical_pass_ = 0;
+};
+
+} // namespace
+
+double MethodTrial::error_after(double passes, bool random_sequence) const {
+    const double n = std::max(passes, 1.0);
+    return std::sqrt(path_variance / n + wavelength_variance / (random_sequence ? n : n * n));
+}
+
+MethodChoice choose_method(const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options,
+                           const Device& device, const RenderBudget& budget) {
+    Trials try_method(scene, options, device, budget);
+    const auto with = [](int count) { return Method{Method::Kind::IlluminantMixture, count}; };
+
+    double best = try_method(with(narrowest));
+    int count = narrowest;
+    if (scene->effects().dispersion) {
+        if (const double error = try_method(with(1)); error < best) {
+            best = error;
+            count = 1;
+        }
+    }
+    for (int wider = 2 * narrowest; count >= narrowest && wider <= widest; wider *= 2) {
+        const double error = try_method(with(wider));
+        const bool enough = error > worthwhile * best;
+        if (error < best) {
+            best = error;
+            count = wider;
+        }
+        if (enough)
+            break;
+    }
+    MethodChoice& choice = try_method.choice;
+    choice.method =
+        std::min_element(choice.trials.begin(), choice.trials.end(), [&](const MethodTrial& a, const MethodTrial& b) {
+            return try_method.error(a) < try_method.error(b);
+        })->method;
+    return std::move(choice);
+}
+
+std::string describe(const MethodChoice& choice, bool random_sequence) {
+    std::string text =
+        fmt::format("auto: {:<24}{:>9}  {:>21}  {:>21}  {:>20}\n", "method", "ms/pass", "paths' variance",
+                    "wavelengths' variance", fmt::format("RMS noise, {:.3g} s", choice.budget_seconds));
+    for (const MethodTrial& trial : choice.trials)
+        text += fmt::format("auto: {:<24}{:>9.1f}  {:>21.4g}  {:>21.4g}  {:>20.4g}\n", trial.method.name(),
+                            1e3 * trial.pass_seconds, trial.path_variance, trial.wavelength_variance,
+                            trial.error_after(choice.budget_seconds / trial.pass_seconds, random_sequence));
+    return text + fmt::format("auto: chose {}, the least noise of these after {:.3g} s; the trials took {:.2g} s\n",
+                              choice.method.name(), choice.budget_seconds, choice.seconds);
+}
+
+} // namespace tristim

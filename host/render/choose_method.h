@@ -1,0 +1,42 @@
+#pragma once
+
+#include "render/device_scene.h"
+#include "render/method.h"
+#include "render/options.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tristim {
+
+/// What a few passes of a method tell. Variances are those of a pass's XYZ, means over pixels and channels.
+struct MethodTrial {
+    Method method;
+    double path_variance = 0.0;       ///< of passes with the same wavelengths
+    double wavelength_variance = 0.0; ///< of their expectations over the choice of wavelengths
+    double pass_seconds = 0.0;
+
+    /// The RMS error of the mean of n passes, without what the search radius blurs: paths of different passes are
+    /// independent, wavelengths (unless random) follow a sequence whose error falls as 1/n.
+    double error_after(double passes, bool random_sequence) const;
+};
+
+/// The method of `--method auto`, and why.
+struct MethodChoice {
+    Method method;
+    std::vector<MethodTrial> trials; ///< in the order they were made
+    double budget_seconds = 0.0;     ///< for which errors are predicted
+    double seconds = 0.0;            ///< of rendering that the trials took
+};
+
+/// Tries unbiased methods on the scene, each in a few passes, and chooses the one that predicts the least error when
+/// the budget is spent. What is tried follows from the scene: see the .cpp file. Methods whose predictions differ by
+/// less than the machine's timing may change places from run to run. Throws Error as Renderer does.
+MethodChoice choose_method(const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options,
+                           const Device& device, const RenderBudget& budget);
+
+/// A table of the trials and a sentence, several lines, for people.
+std::string describe(const MethodChoice& choice, bool random_sequence);
+
+} // namespace tristim
