@@ -3,9 +3,11 @@
 #include "commands/bench_film.h"
 #include "commands/bench_pass.h"
 #include "commands/bench_rays.h"
+#include "commands/bench_wavelengths.h"
 #include "commands/compare.h"
 #include "commands/devices.h"
 #include "commands/film.h"
+#include "commands/methods.h"
 #include "commands/reference.h"
 #include "commands/render.h"
 #include "commands/report.h"
@@ -48,6 +50,7 @@ int run(int argc, char** argv) {
     app.get_formatter()->column_width(36);
     tristim::add_render_command(app);
     tristim::add_reference_command(app);
+    tristim::add_methods_command(app);
     tristim::add_devices_command(app);
     tristim::add_compare_command(app);
     tristim::add_film_command(app);
@@ -57,6 +60,7 @@ int run(int argc, char** argv) {
     tristim::add_bench_rays_command(app);
     tristim::add_bench_pass_command(app);
     tristim::add_bench_film_command(app);
+    tristim::add_bench_wavelengths_command(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::RuntimeError& error) {
