@@ -14,6 +14,7 @@
 #define LAMBDA_MAX 780.0f
 #define LAMBDA_BINS 400
 #define SOBOL_DEGREE 5u
+#define WITHIN_BIN (1.0f - 0x1p-14f)  // the farthest in a bin that does not round up into the next
 
 typedef struct Sampler {
     uint seed, pass;
@@ -75,7 +76,7 @@ float invert_cdf(const global float* cdf, float u, float* pdf) {
             high = middle;
     }
     *pdf = cdf[low + 1] - cdf[low];
-    return LAMBDA_MIN + (float)low + clamp((u - cdf[low]) / *pdf, 0.0f, 1.0f - 0x1p-14f);
+    return LAMBDA_MIN + (float)low + clamp((u - cdf[low]) / *pdf, 0.0f, WITHIN_BIN);
 }
 
 // λ with the pdf of Radziszewski et al. 2009, near the eye's sensitivity and invertible: p(λ) ∝ 1/cosh²(0.0072 (λ - 538 nm)).

@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "colour_difference.h"
 #include "spectra/gauss_rule.h"
 
 #include <gtest/gtest.h>
@@ -291,16 +292,6 @@ TEST(GaussRule, ThreeWavelengthsAreNotDerivable) {
         EXPECT_THROW(gauss_rule(count), Error) << count;
 }
 
-/// CIE 1976 L*a*b* (CIE 15:2018).
-std::array<double, 3> lab(const Xyz& xyz, const Xyz& white) {
-    std::array<double, 3> f{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double ratio = xyz[i] / white[i];
-        f[i] = ratio > std::pow(6.0 / 29.0, 3) ? std::cbrt(ratio) : ratio * (841.0 / 108.0) + 4.0 / 29.0;
-    }
-    return {116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])};
-}
-
 /// The mean ΔE of smooth reflectances, the colours of a grid in [0.1, 0.9]³ of linear sRGB, under a light.
 double mean_delta_e(const QuadratureRule& rule, const std::function<double(double)>& light) {
     const auto exact = [](const std::function<double(double)>& spectrum) {
@@ -320,9 +311,8 @@ double mean_delta_e(const QuadratureRule& rule, const std::function<double(doubl
             for (const double b : {0.1, 0.5, 0.9}) {
                 const Spectrum reflectance = Spectrum::rgb_albedo({r, g, b});
                 const auto reflected = [&](double lambda) { return reflectance(lambda) * light(lambda); };
-                const auto a = lab(apply(rule, reflected), white);
-                const auto e = lab(exact(reflected), white);
-                sum += std::hypot(a[0] - e[0], a[1] - e[1], a[2] - e[2]);
+                sum += test::delta_e_1976(test::to_lab(apply(rule, reflected), white),
+                                          test::to_lab(exact(reflected), white));
                 ++colours;
             }
         }

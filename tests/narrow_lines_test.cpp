@@ -22,7 +22,7 @@ Spectrum line(double at_nm, double width_nm) {
                                       {0.0, 2.0 / width_nm, 0.0});
 }
 
-double sum(const std::array<double, lambda_bins>& bins) {
+double sum(const WavelengthBins& bins) {
     double total = 0.0;
     for (const double bin : bins)
         total += bin;

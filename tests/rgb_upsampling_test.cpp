@@ -16,7 +16,7 @@ namespace {
 
 /// XYZ of a reflectance under D65, as a renderer that works in 1 nm bins sums it; Y of the white is 1.
 Xyz reflected_xyz(const Spectrum& reflectance) {
-    static const std::array<double, lambda_bins> d65 = Spectrum::rgb_illuminant_white().bins();
+    static const WavelengthBins d65 = Spectrum::rgb_illuminant_white().bins();
     const auto bins = reflectance.bins();
     Xyz xyz{};
     for (std::size_t i = 0; i < bins.size(); ++i) {

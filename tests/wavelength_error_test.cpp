@@ -17,9 +17,9 @@ std::string flat_scene(const std::string& name) {
     return TRISTIM_SOURCE_DIR "/bench/scenes/" + name + ".pbrt";
 }
 
-class FlatScene {
+class MirrorScene {
   public:
-    explicit FlatScene(const std::string& name)
+    explicit MirrorScene(const std::string& name)
         : scene_(load_scene(flat_scene(name))), options_(options_from_scene(scene_.settings)),
           on_device_(std::make_shared<const DeviceScene>(scene_, options_, test_device())) {}
 
@@ -71,7 +71,7 @@ class WavelengthError : public testing::TestWithParam<Bound> {};
 TEST_P(WavelengthError, IsManyTimesBelowThatOfRandomWavelengths) {
     constexpr std::uint32_t passes = 2048;
     const Bound& bound = GetParam();
-    const FlatScene scene(bound.scene);
+    const MirrorScene scene(bound.scene);
     const ExactImage exact = scene.exact(512);
     const WavelengthCurve curve = scene.error(bound.method, false, exact.image, passes, bound.repeats);
     const double random = scene.random_error("tristimulus:1", 2 * passes) / std::sqrt(passes);
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Lights, WavelengthError,
 TEST(WavelengthErrorInstrument, FindsTheErrorThatTheVarianceOfRandomPassesTells) {
     constexpr int repeats = 128;
     const double most = 0.5 * std::sqrt(2.0 / repeats), least = most / std::sqrt(3.0);
-    const FlatScene scene("d65");
+    const MirrorScene scene("d65");
     const WavelengthCurve curve = scene.error("tristimulus:1", true, scene.exact(16).image, 32, repeats);
     const double expected = scene.random_error("tristimulus:1", 4096);
     ASSERT_EQ(curve.passes, (std::vector<std::uint64_t>{1, 2, 4, 8, 16, 32}));

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 namespace tristim {
 namespace {
@@ -71,8 +72,8 @@ class Bench {
     void save();
     bool measure_scene(PlannedScene& planned);
     Reference obtain_reference(PlannedScene& planned, DeviceScenes& scenes, bool& stopped);
-    double choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const Repeat& earlier,
-                  RenderOptions& options) const;
+    std::optional<double> choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device,
+                                 const Repeat& earlier, const std::string& what, RenderOptions& options) const;
     bool run_repeat(PlannedScene& planned, DeviceScenes& scenes, const XyzImage& reference, std::size_t repeat);
 
     BenchPlan& plan_;
@@ -188,9 +189,9 @@ bool Bench::measure_scene(PlannedScene& planned) {
 }
 
 /// For the method auto: fills in what an earlier part of the repeat chose, or chooses. Returns the seconds that
-/// choosing took.
-double Bench::choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const Repeat& earlier,
-                     RenderOptions& options) const {
+/// choosing took, or none if it was stopped.
+std::optional<double> Bench::choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device,
+                                    const Repeat& earlier, const std::string& what, RenderOptions& options) const {
     if (!options.auto_method)
         return 0.0;
     options.auto_method = false;
@@ -198,7 +199,14 @@ double Bench::choose(const std::shared_ptr<const DeviceScene>& scene, const Devi
         options.method = parse_method(earlier.method);
         return earlier.trial_seconds;
     }
-    const MethodChoice choice = choose_method(scene, options, device, {{}, plan_.results.seconds});
+    bool stopped = false;
+    const MethodChoice choice =
+        choose_method(scene, options, device, {{}, plan_.results.seconds}, [&](const Method& method) {
+            stopped = !go_on(0.0, what + ": trying " + method.name());
+            return !stopped;
+        });
+    if (stopped)
+        return std::nullopt;
     options.method = choice.method;
     return choice.seconds;
 }
@@ -217,9 +225,12 @@ bool Bench::run_repeat(PlannedScene& planned, DeviceScenes& scenes, const XyzIma
         options.seed = bench.seed + static_cast<std::uint32_t>(repeat);
         const Device& device = plan_.devices[runs[i].device];
         runs[i].repeats.resize(std::max(runs[i].repeats.size(), repeat + 1));
-        const double trial_seconds = choose(scenes.get(options, device), device, runs[i].repeats[repeat], options);
+        const std::optional<double> trial_seconds =
+            choose(scenes.get(options, device), device, runs[i].repeats[repeat], what, options);
+        if (!trial_seconds)
+            return false;
         contestants.emplace_back(Renderer(scenes.get(options, device), options, device),
-                                 checkpoint_times(bench.seconds), trial_seconds);
+                                 checkpoint_times(bench.seconds), *trial_seconds);
         contestants.back().restore(state_path(planned, runs[i], repeat), runs[i].repeats[repeat]);
     }
 

@@ -42,6 +42,8 @@ struct Command {
 VariantGroup variants(const Command& command, const RenderOptions& base) {
     std::string methods = baseline;
     for (const Variant& variant : method_variants(command.methods, base).variants) {
+        if (variant.options.auto_method)
+            fail("--methods takes no auto here: there is no noise of paths to weigh wavelengths against");
         const std::string name = method_name(variant.options) + "@" + sequence_name(variant.options);
         if (name != baseline)
             methods += "," + name;

@@ -16,13 +16,15 @@ void run() {
         std::string w = fixed ? std::to_string(kind.most * kind.wavelengths) : count;
         if (kind.wavelengths != 1)
             w = fmt::format("{} {}", kind.wavelengths, count);
+        const std::string range = fixed ? "" : fmt::format("; {} from {} to {}", count, kind.least, kind.most);
         fmt::print(line, pattern(kind), w, kind.unbiased ? "yes" : "biased",
-                   fmt::format("{} ({})", kind.summary, kind.source));
-        if (!fixed)
-            fmt::print(line, "", "", "", fmt::format("{} from {} to {}", count, kind.least, kind.most));
+                   fmt::format("{}{} ({})", kind.summary, range, kind.source));
     }
-    fmt::print(line, "auto", "", "yes", "tries a few passes of several methods on the scene, and takes the best");
-    fmt::print("Each with --sequence stratified, within a pass and over the passes, or random as in the paper. Exact: "
+    fmt::print(line, "auto", "", "yes",
+               "illuminant-mixture, with the C that a few passes of several find best for the scene");
+    fmt::print("With --sequence stratified wavelengths are spread within a pass and over the passes, with random they "
+               "are drawn "
+               "afresh as in the paper; those of rgb and gauss are fixed. Exact: "
                "passes average to the XYZ of every spectrum.\n");
 }
 

@@ -66,10 +66,16 @@ std::uint64_t render_passes(Renderer& renderer, const RenderBudget& limits, bool
 /// --method auto: fills in the method, and says which and why.
 void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const RenderBudget& budget,
             bool quiet, RenderOptions& options) {
-    const MethodChoice choice = choose_method(scene, options, device, budget);
+    StatusLine status(quiet);
+    const MethodChoice choice = choose_method(scene, options, device, budget, [&](const Method& method) {
+        if (status.due())
+            status.show("auto: trying " + method.name());
+        return !interrupted();
+    });
+    status.finish();
     options.method = choice.method;
     options.auto_method = false;
-    if (!quiet)
+    if (!quiet && !interrupted())
         fmt::print(stderr, "{}", describe(choice, options.random_sequence));
 }
 

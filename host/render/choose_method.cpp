@@ -8,20 +8,22 @@
 #include <cmath>
 #include <limits>
 
-// What is tried. Where the light is known, no pdf for one wavelength that serves X, Y and Z has much less variance than
-// (x̄ + ȳ + z̄) S, and wavelengths at equal distances in its CDF vary less the more there are; so illuminant-mixture:C is
-// tried with C as wide as the narrowest vectors, and with twice as many as long as that lowers the predicted error.
-// Paths that a dispersive surface leaves with one of C wavelengths may lose by a larger C: then one wavelength is tried
-// too. Samplers that do not know the light are not: a trial of a few wavelengths that miss the lines of a lamp would
-// take its darkness for a lack of variance.
+// What is tried: illuminant-mixture:C, of the samplers in kernels/samplers/ the one that varies least under lamps of
+// lines. (Under smooth light others may vary less, in a term that falls as the square of the passes.) First C as wide
+// as the narrowest vectors, then twice as many as long as that lowers the predicted error, since wavelengths at equal
+// distances vary less the more there are. Paths that a dispersive surface leaves with one of C wavelengths may lose by
+// a larger C: then one wavelength is tried too. Samplers that do not know the light are not tried: a trial of a few
+// wavelengths that miss the lines of a lamp would take its darkness for a lack of variance.
 
 namespace tristim {
 namespace {
 
-constexpr int narrowest = 4; ///< a vector's lanes: fewer wavelengths take the same time
+constexpr int narrowest = 4; ///< the lanes of a vector
 constexpr int widest = 64;
 /// Sets of wavelengths that a trial sees, each with two sets of paths; more where a set is a single wavelength.
 constexpr int least_sets = 2;
+/// Share of the budget after which no further method is tried.
+constexpr double most_trial_share = 0.1;
 /// Search radii are those of the middle of the render, but not of a later pass than this: they hardly shrink from
 /// there.
 constexpr double last_typical_pass = 1000.0;
@@ -85,13 +87,11 @@ class Trials {
         Renderer renderer(scene_, options_, device_);
         if (choice.trials.empty())
             fix_budget(renderer);
-        choice.trials.push_back(measure(renderer));
-        return error(choice.trials.back());
-    }
-
-    double error(const MethodTrial& trial) const {
+        const MethodTrial& trial = choice.trials.emplace_back(measure(renderer));
         return trial.error_after(choice.budget_seconds / trial.pass_seconds, options_.random_sequence);
     }
+
+    bool affordable() const { return choice.seconds < most_trial_share * choice.budget_seconds; }
 
     MethodChoice choice;
 
@@ -144,34 +144,29 @@ double MethodTrial::error_after(double passes, bool random_sequence) const {
 }
 
 MethodChoice choose_method(const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options,
-                           const Device& device, const RenderBudget& budget) {
-    Trials try_method(scene, options, device, budget);
+                           const Device& device, const RenderBudget& budget, const TrialCallback& may_try) {
     const auto with = [](int count) { return Method{Method::Kind::IlluminantMixture, count}; };
-
-    double best = try_method(with(narrowest));
-    int count = narrowest;
-    if (scene->effects().dispersion) {
-        if (const double error = try_method(with(1)); error < best) {
-            best = error;
-            count = 1;
-        }
-    }
-    for (int wider = 2 * narrowest; count >= narrowest && wider <= widest; wider *= 2) {
-        const double error = try_method(with(wider));
-        const bool enough = error > worthwhile * best;
+    Trials trials(scene, options, device, budget);
+    trials.choice.method = with(narrowest);
+    double best = std::numeric_limits<double>::infinity();
+    // Whether C = count is better by what makes a further trial worthwhile.
+    const auto try_count = [&](int count) {
+        const bool first = trials.choice.trials.empty();
+        if (!may_try(with(count)) || !(first || trials.affordable()))
+            return false;
+        const double error = trials(with(count));
+        const bool better = error < worthwhile * best;
         if (error < best) {
             best = error;
-            count = wider;
+            trials.choice.method = with(count);
         }
-        if (enough)
-            break;
+        return better;
+    };
+    if (!try_count(narrowest) || (scene->effects().dispersion && try_count(1)))
+        return std::move(trials.choice);
+    for (int wider = 2 * narrowest; wider <= widest && try_count(wider); wider *= 2) {
     }
-    MethodChoice& choice = try_method.choice;
-    choice.method =
-        std::min_element(choice.trials.begin(), choice.trials.end(), [&](const MethodTrial& a, const MethodTrial& b) {
-            return try_method.error(a) < try_method.error(b);
-        })->method;
-    return std::move(choice);
+    return std::move(trials.choice);
 }
 
 std::string describe(const MethodChoice& choice, bool random_sequence) {
@@ -182,7 +177,7 @@ std::string describe(const MethodChoice& choice, bool random_sequence) {
         text += fmt::format("auto: {:<24}{:>9.1f}  {:>21.4g}  {:>21.4g}  {:>20.4g}\n", trial.method.name(),
                             1e3 * trial.pass_seconds, trial.path_variance, trial.wavelength_variance,
                             trial.error_after(choice.budget_seconds / trial.pass_seconds, random_sequence));
-    return text + fmt::format("auto: chose {}, the least noise of these after {:.3g} s; the trials took {:.2g} s\n",
+    return text + fmt::format("auto: chose {}, the least noise of these after {:.3g} s; {:.2g} s of trial passes\n",
                               choice.method.name(), choice.budget_seconds, choice.seconds);
 }
 

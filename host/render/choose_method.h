@@ -4,6 +4,7 @@
 #include "render/method.h"
 #include "render/options.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace tristim {
 struct MethodTrial {
     Method method;
     double path_variance = 0.0;       ///< of passes with the same wavelengths
-    double wavelength_variance = 0.0; ///< of their expectations over the choice of wavelengths
+    double wavelength_variance = 0.0; ///< of their expectations, over the first sets of wavelengths of the sequence
     double pass_seconds = 0.0;
 
     /// The RMS error of the mean of n passes, without what the search radius blurs: paths of different passes are
@@ -27,14 +28,19 @@ struct MethodChoice {
     Method method;
     std::vector<MethodTrial> trials; ///< in the order they were made
     double budget_seconds = 0.0;     ///< for which errors are predicted
-    double seconds = 0.0;            ///< of rendering that the trials took
+    double seconds = 0.0;            ///< of rendering that the trials took, kernel builds aside
 };
 
+/// Called before each trial; false ends them, and the best so far is chosen.
+using TrialCallback = std::function<bool(const Method&)>;
+
 /// Tries unbiased methods on the scene, each in a few passes, and chooses the one that predicts the least error when
-/// the budget is spent. What is tried follows from the scene: see the .cpp file. Methods whose predictions differ by
-/// less than the machine's timing may change places from run to run. Throws Error as Renderer does.
-MethodChoice choose_method(const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options,
-                           const Device& device, const RenderBudget& budget);
+/// the budget is spent (of passes: the time that they take by the first method tried). No further one is tried once
+/// trials have taken a tenth of it. What is tried follows from the scene: see the .cpp file. Methods whose predictions
+/// differ by less than the machine's timing may change places from run to run. Throws Error as Renderer does.
+MethodChoice choose_method(
+    const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options, const Device& device,
+    const RenderBudget& budget, const TrialCallback& may_try = [](const Method&) { return true; });
 
 /// A table of the trials and a sentence, several lines, for people.
 std::string describe(const MethodChoice& choice, bool random_sequence);

@@ -7,7 +7,6 @@
 #include "scene/scene.h"
 #include "shared_types.h"
 
-#include <array>
 #include <vector>
 
 namespace tristim {
@@ -25,8 +24,8 @@ struct FlatScene {
     std::vector<SceneLight> lights; ///< an area light becomes one for each of its triangles
     std::vector<float> light_cdf;   ///< lights.size() + 1 values, by power
     SpectrumTable spectra;
-    std::array<double, lambda_bins> emission{}; ///< power of all lights in each bin of 1 nm, up to a factor
-    int film_table_rows = 0;                    ///< of the pass table behind the spectra, which film_tables.cl fills
+    WavelengthBins emission{}; ///< power of all lights in each bin of 1 nm, up to a factor
+    int film_table_rows = 0;   ///< of the pass table behind the spectra, which film_tables.cl fills
 };
 
 /// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no

@@ -76,7 +76,7 @@ Method parse_method(const std::string& text) {
         std::vector<std::string> patterns;
         for (const MethodKind& kind : kinds)
             patterns.push_back(pattern(kind));
-        fail("unknown method '{}': expected {}", text, fmt::join(patterns, ", "));
+        fail("unknown method '{}': expected {}; or auto, to render or bench", text, fmt::join(patterns, ", "));
     }
     if (found->count_name == nullptr) {
         if (colon == text.size())

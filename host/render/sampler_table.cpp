@@ -4,6 +4,7 @@
 #include "spectra/gauss_rule.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace tristim {
@@ -60,10 +61,11 @@ WavelengthBins illuminant_pdf(const WavelengthBins& matching, const WavelengthBi
     WavelengthBins lit{};
     std::transform(matching.begin(), matching.end(), emission.begin(), lit.begin(), std::multiplies<>());
     const double total = sum(lit);
+    const double plain_total = sum(matching);
     const double plain_share = total > 0.0 ? defensive_share : 1.0;
     WavelengthBins pdf{};
     for (std::size_t i = 0; i < pdf.size(); ++i) {
-        pdf[i] = plain_share * matching[i] / sum(matching);
+        pdf[i] = plain_share * matching[i] / plain_total;
         if (total > 0.0)
             pdf[i] += (1.0 - plain_share) * lit[i] / total;
     }

@@ -3,13 +3,9 @@
 #include "render/method.h"
 #include "spectra/spectrum.h"
 
-#include <array>
 #include <vector>
 
 namespace tristim {
-
-/// One value for each bin of 1 nm from 380 to 780 nm.
-using WavelengthBins = std::array<double, lambda_bins>;
 
 /// What samplers that follow the scene's light keep for the plain colour matching functions, so that no wavelength that
 /// a light emits weighs more than 1/defensive_share times what it does without the light (Hesterberg 1995's defensive

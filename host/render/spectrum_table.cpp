@@ -7,9 +7,7 @@
 namespace tristim {
 namespace {
 
-using Bins = std::array<double, lambda_bins>;
-
-Rgb rgb_of(const Bins& bins) {
+Rgb rgb_of(const WavelengthBins& bins) {
     Xyz xyz{};
     for (std::size_t channel = 0; channel < 3; ++channel) {
         for (std::size_t i = 0; i < bins.size(); ++i)
@@ -19,14 +17,14 @@ Rgb rgb_of(const Bins& bins) {
 }
 
 Rgb band_values(const Spectrum& spectrum, SpectrumTable::Use use) {
-    Bins bins = spectrum.bins();
+    WavelengthBins bins = spectrum.bins();
     if (use == SpectrumTable::Use::Emission) {
         Rgb rgb = rgb_of(bins);
         for (double& value : rgb)
             value = std::max(value, 0.0); // an RGB renderer has no negative light
         return rgb;
     }
-    static const Bins white = Spectrum::named("stdillum-D65").bins();
+    static const WavelengthBins white = Spectrum::named("stdillum-D65").bins();
     for (std::size_t i = 0; i < bins.size(); ++i)
         bins[i] *= white[i];
     const Rgb weighted = rgb_of(bins);

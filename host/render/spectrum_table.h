@@ -22,7 +22,7 @@ class SpectrumTable {
 
     int rows() const { return static_cast<int>(entries_.size()); }
 
-    /// For tristimulus and spectral methods the 400 bin means of each row; for rgb three values of each, which are
+    /// For all methods but rgb the 400 bin means of each row; for rgb three values of each, which are
     /// integrals over the RGB colour matching functions (the paper's "RGB rendering", section 4): emission relative
     /// to 1/k as in equations 2 to 5, the rest as means under D65, so that a constant spectrum keeps its value.
     std::vector<float> values(const Method& method) const;

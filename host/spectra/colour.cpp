@@ -40,9 +40,9 @@ Matrix3 inverse(const Matrix3& m) {
 
 } // namespace
 
-const std::array<std::array<double, lambda_bins>, 3>& cie_bins() {
-    static const std::array<std::array<double, lambda_bins>, 3> bins{
-        Spectrum::named("cie-x").bins(), Spectrum::named("cie-y").bins(), Spectrum::named("cie-z").bins()};
+const std::array<WavelengthBins, 3>& cie_bins() {
+    static const std::array<WavelengthBins, 3> bins{Spectrum::named("cie-x").bins(), Spectrum::named("cie-y").bins(),
+                                                    Spectrum::named("cie-z").bins()};
     return bins;
 }
 
@@ -57,7 +57,7 @@ double cie_y_integral() {
 }
 
 Xyz spectrum_to_xyz(const Spectrum& spectrum) {
-    const std::array<double, lambda_bins> bins = spectrum.bins();
+    const WavelengthBins bins = spectrum.bins();
     Xyz xyz{};
     for (std::size_t channel = 0; channel < 3; ++channel) {
         for (std::size_t i = 0; i < bins.size(); ++i)

@@ -12,7 +12,7 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 /// CIE 1931 2° colour matching functions x̄, ȳ, z̄ averaged over the 400 bins [380+i, 381+i) nm (1 nm table of CIE
 /// 018:2019, linear between samples).
-const std::array<std::array<double, lambda_bins>, 3>& cie_bins();
+const std::array<WavelengthBins, 3>& cie_bins();
 
 /// k = ∫ȳ dλ over 380–780 nm in nm, the denominator of the paper's equations 2–4.
 double cie_y_integral();

@@ -12,8 +12,9 @@
 //   L s = Aᵀμ + λ,  A s = XYZ,  0 ≤ s ≤ 1,  λ ≥ 0 where s = 0, λ ≤ 0 where s = 1, λ = 0 elsewhere.
 // The primal-dual active set method (Hintermüller, Ito & Kunisch, "The Primal-Dual Active Set Strategy as a Semismooth
 // Newton Method", SIAM Journal on Optimization 13(3), 2003) guesses which samples are 0 and 1, solves for the rest, and
-// guesses anew from s − λ; a guess that repeats itself is the solution. It takes 1 to 12 guesses.
+// guesses anew from s − λ; a guess that repeats itself is the solution.
 #include "base/error.h"
+#include "base/solve.h"
 #include "spectra/rgb_upsampling.h"
 
 #include <algorithm>
@@ -39,29 +40,6 @@ using BorderVector = std::array<double, borders>;
 /// Where a sample is held.
 enum class Bound : signed char { Free, Zero, One };
 using Bounds = std::array<Bound, samples>;
-
-/// Solves m x = b by elimination with row pivots. The rows of `m` hold b in their last column.
-BorderVector solve_dense(std::array<std::array<double, borders + 1>, borders> m) {
-    for (std::size_t column = 0; column < borders; ++column) {
-        std::size_t pivot = column;
-        for (std::size_t row = column + 1; row < borders; ++row) {
-            if (std::abs(m[row][column]) > std::abs(m[pivot][column]))
-                pivot = row;
-        }
-        std::swap(m[column], m[pivot]);
-        for (std::size_t row = 0; row < borders; ++row) {
-            if (row == column)
-                continue;
-            const double factor = m[row][column] / m[column][column];
-            for (std::size_t k = column; k <= borders; ++k)
-                m[row][k] -= factor * m[column][k];
-        }
-    }
-    BorderVector x{};
-    for (std::size_t i = 0; i < borders; ++i)
-        x[i] = m[i][borders] / m[i][i];
-    return x;
-}
 
 /// The smoothest reflectances of colours under D65.
 class SmoothestReflectance {
@@ -145,22 +123,23 @@ class SmoothestReflectance {
                 columns[i][j] -= upper[i] * columns[i + 1][j];
         }
         // The borders' own equations: A s = XYZ, and ν = s_k if that sample is free, else ν = 0.
-        std::array<std::array<double, borders + 1>, borders> equations{};
+        std::array<BorderVector, borders> equations{};
+        BorderVector right{};
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            equations[channel][borders] = target[channel];
+            right[channel] = target[channel];
             for (std::size_t i = 0; i < samples; ++i) {
                 for (std::size_t j = 0; j < borders; ++j)
                     equations[channel][j] += weights_[channel][i] * columns[i][j];
-                equations[channel][borders] -= weights_[channel][i] * columns[i][borders];
+                right[channel] -= weights_[channel][i] * columns[i][borders];
             }
         }
         if (bounds[k] == Bound::Free) {
             for (std::size_t j = 0; j < borders; ++j)
                 equations[3][j] = columns[k][j];
-            equations[3][borders] = -columns[k][borders];
+            right[3] = -columns[k][borders];
         }
         equations[3][3] -= 1.0;
-        const BorderVector border = solve_dense(equations);
+        const BorderVector border = tristim::solve(equations, right);
         Solution solution;
         for (std::size_t i = 0; i < samples; ++i) {
             solution.reflectance[i] = columns[i][borders];

@@ -16,7 +16,7 @@ constexpr std::array<std::pair<std::string_view, RgbUpsampling>, 2> forms{{
 
 D65Colour make_d65_colour() {
     D65Colour colour;
-    const std::array<double, lambda_bins> d65 = Spectrum::rgb_illuminant_white().bins();
+    const WavelengthBins d65 = Spectrum::rgb_illuminant_white().bins();
     for (std::size_t i = 0; i < d65.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             // In each bin a reflectance that is linear between whole nanometres has the mean of its two ends.

@@ -93,8 +93,8 @@ double Spectrum::mean(double from_nm, double to_nm) const {
     return integral(from_nm, to_nm) / (to_nm - from_nm);
 }
 
-std::array<double, lambda_bins> Spectrum::bins() const {
-    std::array<double, lambda_bins> result{};
+WavelengthBins Spectrum::bins() const {
+    WavelengthBins result{};
     for (int i = 0; i < lambda_bins; ++i)
         result[static_cast<std::size_t>(i)] = mean(lambda_min_nm + i, lambda_min_nm + i + 1);
     return result;

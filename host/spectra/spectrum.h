@@ -13,6 +13,9 @@ inline constexpr double lambda_min_nm = 380.0;
 inline constexpr double lambda_max_nm = 780.0;
 inline constexpr int lambda_bins = 400;
 
+/// A value for each bin of 1 nm.
+using WavelengthBins = std::array<double, lambda_bins>;
+
 /// How RGB colours become reflectances, from which their spectra follow (rgb_upsampling.h).
 enum class RgbUpsampling {
     JakobHanika, ///< the sigmoid of a quadratic (Jakob & Hanika 2019)
@@ -61,7 +64,7 @@ class Spectrum {
     double mean(double from_nm, double to_nm) const;
 
     /// Means over the 400 bins [380+i, 381+i) nm.
-    std::array<double, lambda_bins> bins() const;
+    WavelengthBins bins() const;
 
     /// The smallest value over [from_nm, to_nm].
     double minimum(double from_nm, double to_nm) const;
