@@ -2,6 +2,7 @@
 #include "kernel_harness.h"
 #include "render/choose_method.h"
 #include "render/renderer.h"
+#include "test_names.h"
 #include "test_scenes.h"
 
 #include <algorithm>
@@ -132,13 +133,14 @@ TEST_P(EveryScene, ChoosesTheLeastPredictedErrorOfUnbiasedMethods) {
     for (const MethodTrial& trial : choice.trials) {
         EXPECT_TRUE(trial.method.unbiased()) << trial.method.name();
         EXPECT_GT(trial.pass_seconds, 0.0);
+        EXPECT_EQ(trial.predicted_error, error(trial));
         total += (trial.method.wavelengths() == 1 ? 8.0 : 4.0) * trial.pass_seconds;
     }
     EXPECT_GE(choice.seconds, total) << "each trial is four passes, or eight";
     const std::vector<std::string> names = tried(choice);
     const bool one = std::find(names.begin(), names.end(), "illuminant-mixture:1") != names.end();
     EXPECT_EQ(one, derive_effects(scene).dispersion);
-    const std::string text = describe(choice, false);
+    const std::string text = describe(choice);
     for (const std::string& name : names)
         EXPECT_NE(text.find(name), std::string::npos) << text;
     EXPECT_NE(text.find("chose " + choice.method.name()), std::string::npos) << text;
@@ -146,13 +148,7 @@ TEST_P(EveryScene, ChoosesTheLeastPredictedErrorOfUnbiasedMethods) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,
                          testing::Values("dispersion/scene.pbrt", "box/scene.pbrt", "interference-areas/a.pbrt"),
-                         [](const testing::TestParamInfo<std::string>& scene) {
-                             std::string name = scene.param;
-                             std::replace_if(
-                                 name.begin(), name.end(), [](char c) { return c == '/' || c == '.' || c == '-'; },
-                                 '_');
-                             return name;
-                         });
+                         [](const testing::TestParamInfo<std::string>& scene) { return test_name(scene.param); });
 
 /// Caustics of dispersive glass seen through it: light and eye must keep the same wavelength to meet, and the fewer
 /// there are, the oftener they do. On the prism's screen nothing has to meet, and several wavelengths average.

@@ -1,8 +1,8 @@
 // The wavelength that camera paths keep behind dispersive surfaces: over the passes each pixel sees all of them.
+#include "discrepancy.h"
 #include "render/renderer.h"
 #include "test_scenes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,18 +18,6 @@ Scene floor_behind_glass() {
     add_horizontal_square(scene, 5.0, 0.0, true, add_diffuse(scene, Spectrum::constant(0.5)));
     add_box(scene, {-2, -2, 1}, {2, 2, 2}, false, add_dielectric(scene, Spectrum::named("glass-SF11")));
     return scene;
-}
-
-/// Star discrepancy of points in [0, 1).
-double discrepancy(std::vector<double> points) {
-    std::sort(points.begin(), points.end());
-    const auto n = static_cast<double>(points.size());
-    double largest = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto below = static_cast<double>(i);
-        largest = std::max({largest, points[i] - below / n, (below + 1.0) / n - points[i]});
-    }
-    return largest;
 }
 
 class EyeSlots : public testing::TestWithParam<int> {};
@@ -59,7 +47,7 @@ TEST_P(EyeSlots, PixelsSeeAllWavelengths) {
     for (std::size_t pixel = 0; pixel < positions.size(); ++pixel) {
         const auto n = static_cast<double>(positions[pixel].size());
         ASSERT_GT(n, 0.6 * passes) << "most paths go through the glass";
-        EXPECT_LT(discrepancy(positions[pixel]), 2.5 / std::sqrt(n)) << "pixel " << pixel;
+        EXPECT_LT(star_discrepancy(positions[pixel]), 2.5 / std::sqrt(n)) << "pixel " << pixel;
         for (const int visited : visits[pixel]) // four standard deviations of a binomial
             EXPECT_NEAR(visited, n / w, 4.0 * std::sqrt(n / w)) << "pixel " << pixel;
     }

@@ -121,10 +121,12 @@ TEST(KernelSamplerMeans, StratifiedPassesAverageToTheIntegrals) {
 /// The samplers that heed the light, told of one that is not in the scene.
 std::vector<SamplerCase> misled_cases(int count) {
     std::vector<SamplerCase> cases;
-    for (const char* method : {"illuminant", "illuminant-mixture"})
-        cases.push_back({fmt::format("{}:{} for sodium", method, count),
-                         parse_method(fmt::format("{}:{}", method, count)),
-                         Spectrum::named("illum-sodium-lines").bins()});
+    for (const MethodKind& kind : method_kinds()) {
+        const Method method{kind.kind, count};
+        if (heeds_light(kind.kind))
+            cases.push_back(
+                {fmt::format("{} for sodium", method.name()), method, Spectrum::named("illum-sodium-lines").bins()});
+    }
     return cases;
 }
 
@@ -192,9 +194,9 @@ TEST(KernelSamplerMeans, MixturePassesAgreeOnXPlusYPlusZOfAConstant) {
 /// 1/(1 - defensive_share) of the light's X, Y and Z (of their sum where channels share wavelengths) for its part.
 TEST(KernelSamplerMeans, WavelengthsOfTheSamplersLightAreBounded) {
     for_each_light({1, 4}, [](const SamplerCase& of, const std::string& light) {
-        const bool sets = of.method.kind == Method::Kind::Illuminant;
-        if (!sets && of.method.kind != Method::Kind::IlluminantMixture)
+        if (!heeds_light(of.method.kind))
             return;
+        const bool sets = of.method.kind == Method::Kind::Illuminant;
         const SamplerOracle oracle(of.method, of.emission);
         const Xyz exact = spectrum_to_xyz(Spectrum::named(light));
         const std::vector<WavelengthSample> samples =

@@ -1,5 +1,6 @@
 // The sequences and the inverse cumulative distributions of kernels/wavelengths.cl.
 
+#include "discrepancy.h"
 #include "kernel_harness.h"
 #include "render/sampler_table.h"
 #include "spectra/colour.h"
@@ -146,24 +147,18 @@ TEST(KernelWavelengthSequences, StratifiedSequenceFillsEverySet) {
         for (const std::uint32_t sets : {1U, 20U}) {
             for (const std::uint32_t set : {0U, sets - 1U}) {
                 for (const std::size_t passes : {10U, 100U, 4096U}) {
-                    std::vector<float> p = positions(false, seed, set, sets, passes);
-                    for (float& position : p) {
+                    std::vector<double> points;
+                    for (const float position : positions(false, seed, set, sets, passes)) {
                         const double within = double{position} * sets - set;
                         // One rounding of (set + v), one of the quotient; in units of a set.
                         ASSERT_GE(within, -2.0 * unit_roundoff * sets) << "set " << set << " of " << sets;
                         ASSERT_LE(within, 1.0 + 2.0 * unit_roundoff * sets) << "set " << set << " of " << sets;
                         ASSERT_LT(position, 1.0F);
-                        position = static_cast<float>(within);
+                        points.push_back(within);
                     }
-                    std::sort(p.begin(), p.end());
-                    const auto n = static_cast<double>(passes);
-                    double discrepancy = 0.0;
-                    for (std::size_t i = 0; i < passes; ++i) {
-                        discrepancy = std::max({discrepancy, std::abs(p[i] - static_cast<double>(i) / n),
-                                                std::abs(p[i] - static_cast<double>(i + 1) / n)});
-                    }
-                    const double bound = std::popcount(passes) / n + 4.0 * unit_roundoff * sets;
-                    EXPECT_LE(discrepancy, bound)
+                    const double bound =
+                        std::popcount(passes) / static_cast<double>(passes) + 4.0 * unit_roundoff * sets;
+                    EXPECT_LE(test::star_discrepancy(points), bound)
                         << passes << " passes, set " << set << " of " << sets << ", seed " << seed;
                 }
             }

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "test_names.h"
+
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 
 namespace tristim::test {
@@ -14,9 +15,7 @@ struct MethodCase {
 };
 
 inline std::string method_case_name(const testing::TestParamInfo<MethodCase>& info) {
-    std::string name = info.param.method;
-    std::replace(name.begin(), name.end(), ':', '_');
-    return name + (info.param.direct_photons ? "_photons" : "_sample");
+    return test_name(info.param.method) + (info.param.direct_photons ? "_photons" : "_sample");
 }
 
 } // namespace tristim::test

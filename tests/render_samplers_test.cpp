@@ -1,6 +1,7 @@
 // Every unbiased wavelength sampler converges to the image of spectral:400, where wavelengths part by dispersion and
 // where films colour the light of a lamp of lines.
 #include "image_statistics.h"
+#include "sampler_oracle.h"
 #include "test_names.h"
 
 namespace tristim::test {
@@ -26,7 +27,7 @@ std::vector<MethodRun> runs_for(const SceneCase& scene) {
     for (const MethodKind& kind : method_kinds()) {
         if (!kind.unbiased || kind.kind == Method::Kind::Spectral)
             continue;
-        const bool knows_light = kind.kind == Method::Kind::Illuminant || kind.kind == Method::Kind::IlluminantMixture;
+        const bool knows_light = kernel_test::heeds_light(kind.kind);
         const bool knows_eye = knows_light || kind.kind == Method::Kind::Mixture;
         const bool sets = kind.wavelengths == 3;
         const Method few{kind.kind, sets ? 1 : 4}, many{kind.kind, sets ? 20 : 64}, one{kind.kind, 1};

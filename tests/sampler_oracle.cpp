@@ -182,23 +182,26 @@ SamplerOracle::Integral SamplerOracle::integral(std::size_t channel, const Wavel
     return result;
 }
 
+bool heeds_light(Method::Kind kind) {
+    return kind == Method::Kind::Illuminant || kind == Method::Kind::IlluminantMixture;
+}
+
 std::vector<SamplerCase> sampler_cases(const std::vector<int>& counts, const std::vector<std::string>& emissions) {
     std::vector<SamplerCase> cases;
     for (const MethodKind& kind : method_kinds()) {
         if (!kind.unbiased)
             continue;
-        const bool heeds_light = kind.kind == Method::Kind::Illuminant || kind.kind == Method::Kind::IlluminantMixture;
         std::set<int> possible;
         for (const int count : counts)
             possible.insert(std::clamp(count, kind.least, kind.most));
         for (const int count : possible) {
             const Method method{kind.kind, count};
             for (const std::string& emission : emissions) {
-                if (heeds_light)
+                if (heeds_light(kind.kind))
                     cases.push_back(
                         {fmt::format("{} for {}", method.name(), emission), method, Spectrum::named(emission).bins()});
             }
-            if (!heeds_light)
+            if (!heeds_light(kind.kind))
                 cases.push_back({method.name(), method, {}});
         }
     }

@@ -52,6 +52,9 @@ class SamplerOracle {
     std::vector<WavelengthBins> rows_; ///< the pdf's bins, if it is given by bins
 };
 
+/// Whether the sampler is told of the light that the scene emits.
+bool heeds_light(Method::Kind kind);
+
 /// A sampler to test, and a name for it.
 struct SamplerCase {
     std::string name;

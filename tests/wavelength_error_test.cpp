@@ -4,6 +4,7 @@
 #include "bench_scenes.h"
 #include "child_process.h"
 #include "scene/scene.h"
+#include "test_names.h"
 #include "test_scenes.h"
 
 #include <cmath>
@@ -87,11 +88,7 @@ TEST_P(WavelengthError, IsManyTimesBelowThatOfRandomWavelengths) {
 INSTANTIATE_TEST_SUITE_P(Lights, WavelengthError,
                          testing::Values(Bound{"mercury-lines", "illuminant:1", 100.0, 6},
                                          Bound{"f12", "illuminant:1", 50.0, 6}, Bound{"d65", "tristimulus:1", 10.0, 6}),
-                         [](const auto& bound) {
-                             std::string name = bound.param.scene;
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         [](const auto& bound) { return test_name(bound.param.scene); });
 
 /// The passes of --sequence random are independent: the mean square of the error after n of them is the variance of one
 /// over n. Of R repeats it scatters by √(2/R) to √(2/3R), as the three channels go together or not, and its root by

@@ -224,13 +224,12 @@ bool Bench::run_repeat(PlannedScene& planned, DeviceScenes& scenes, const XyzIma
         RenderOptions options = planned.options[i];
         options.seed = bench.seed + static_cast<std::uint32_t>(repeat);
         const Device& device = plan_.devices[runs[i].device];
+        const std::shared_ptr<const DeviceScene> scene = scenes.get(options, device);
         runs[i].repeats.resize(std::max(runs[i].repeats.size(), repeat + 1));
-        const std::optional<double> trial_seconds =
-            choose(scenes.get(options, device), device, runs[i].repeats[repeat], what, options);
+        const std::optional<double> trial_seconds = choose(scene, device, runs[i].repeats[repeat], what, options);
         if (!trial_seconds)
             return false;
-        contestants.emplace_back(Renderer(scenes.get(options, device), options, device),
-                                 checkpoint_times(bench.seconds), *trial_seconds);
+        contestants.emplace_back(Renderer(scene, options, device), checkpoint_times(bench.seconds), *trial_seconds);
         contestants.back().restore(state_path(planned, runs[i], repeat), runs[i].repeats[repeat]);
     }
 

@@ -76,7 +76,7 @@ void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& devic
     options.method = choice.method;
     options.auto_method = false;
     if (!quiet && !interrupted())
-        fmt::print(stderr, "{}", describe(choice, options.random_sequence));
+        fmt::print(stderr, "{}", describe(choice));
 }
 
 void run(RenderCommand& command) {

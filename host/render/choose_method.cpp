@@ -87,8 +87,9 @@ class Trials {
         Renderer renderer(scene_, options_, device_);
         if (choice.trials.empty())
             fix_budget(renderer);
-        const MethodTrial& trial = choice.trials.emplace_back(measure(renderer));
-        return trial.error_after(choice.budget_seconds / trial.pass_seconds, options_.random_sequence);
+        MethodTrial& trial = choice.trials.emplace_back(measure(renderer));
+        trial.predicted_error = trial.error_after(choice.budget_seconds / trial.pass_seconds, options_.random_sequence);
+        return trial.predicted_error;
     }
 
     bool affordable() const { return choice.seconds < most_trial_share * choice.budget_seconds; }
@@ -169,14 +170,14 @@ MethodChoice choose_method(const std::shared_ptr<const DeviceScene>& scene, cons
     return std::move(trials.choice);
 }
 
-std::string describe(const MethodChoice& choice, bool random_sequence) {
+std::string describe(const MethodChoice& choice) {
     std::string text =
         fmt::format("auto: {:<24}{:>9}  {:>21}  {:>21}  {:>20}\n", "method", "ms/pass", "paths' variance",
                     "wavelengths' variance", fmt::format("RMS noise, {:.3g} s", choice.budget_seconds));
     for (const MethodTrial& trial : choice.trials)
         text += fmt::format("auto: {:<24}{:>9.1f}  {:>21.4g}  {:>21.4g}  {:>20.4g}\n", trial.method.name(),
                             1e3 * trial.pass_seconds, trial.path_variance, trial.wavelength_variance,
-                            trial.error_after(choice.budget_seconds / trial.pass_seconds, random_sequence));
+                            trial.predicted_error);
     return text + fmt::format("auto: chose {}, the least noise of these after {:.3g} s; {:.2g} s of trial passes\n",
                               choice.method.name(), choice.budget_seconds, choice.seconds);
 }

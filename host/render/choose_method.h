@@ -17,6 +17,7 @@ struct MethodTrial {
     double path_variance = 0.0;       ///< of passes with the same wavelengths
     double wavelength_variance = 0.0; ///< of their expectations, over the first sets of wavelengths of the sequence
     double pass_seconds = 0.0;
+    double predicted_error = 0.0; ///< error_after() as many passes as the budget has time for
 
     /// The RMS error of the mean of n passes, without what the search radius blurs: paths of different passes are
     /// independent, wavelengths (unless random) follow a sequence whose error falls as 1/n.
@@ -27,7 +28,7 @@ struct MethodTrial {
 struct MethodChoice {
     Method method;
     std::vector<MethodTrial> trials; ///< in the order they were made
-    double budget_seconds = 0.0;     ///< for which errors are predicted
+    double budget_seconds = 0.0;     ///< after which errors are predicted
     double seconds = 0.0;            ///< of rendering that the trials took, kernel builds aside
 };
 
@@ -43,6 +44,6 @@ MethodChoice choose_method(
     const RenderBudget& budget, const TrialCallback& may_try = [](const Method&) { return true; });
 
 /// A table of the trials and a sentence, several lines, for people.
-std::string describe(const MethodChoice& choice, bool random_sequence);
+std::string describe(const MethodChoice& choice);
 
 } // namespace tristim

@@ -1,6 +1,6 @@
 // illuminant:N: N sets of three as tristimulus:N, with pdfs p_ξ ∝ f_ξ S for ξ = x̄, ȳ, z̄ and S the light that the scene emits
-// (host/render/sampler_table.h), so that what is left to vary is what surfaces do to it; weights f_ξ/(k N p_ξ). Peters 2025,
-// "Spectral rendering, part 2", multiplies one illuminant into one pdf for all channels. The table holds three CDFs.
+// (host/render/sampler_table.h), so that what is left to vary is what surfaces do to it; weights f_ξ/(k N p_ξ). Compare Peters
+// 2025, "Spectral rendering, part 2". The table holds three CDFs.
 float sample_wavelength(const Sampler* s, int w, float3* weight) {
     const int channel = w % 3;
     float pdf;

@@ -1,5 +1,5 @@
 // visible:C: one sample and C - 1 rotations of it in the CDF of one pdf over the visible range, as pbrt-v4 does by default (Pharr,
-// Jakob & Humphreys 2023, section 4.5.4); the pdf is that of Radziszewski et al. 2009, here over 380 to 780 nm.
+// Jakob & Humphreys 2023); the pdf is that of Radziszewski et al. 2009, here over 380 to 780 nm.
 float sample_wavelength(const Sampler* s, int w, float3* weight) {
     float pdf;
     const float lambda = invert_visible(rotated_position(s->seed, s->pass, (uint)w, W), &pdf);
