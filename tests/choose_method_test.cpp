@@ -71,14 +71,14 @@ TEST(ChooseMethod, ErrorOfIndependentPathsAndStratifiedWavelengths) {
 /// Where paths do not vary, the variance is all of the wavelengths: that of the two passes the trial saw.
 TEST(ChooseMethod, AMirrorsVarianceIsThatOfItsWavelengths) {
     const Scene scene = mirror();
-    RenderOptions options = small_render("illuminant-mixture:4", 4, 4, 1, 0.1, 4);
+    RenderOptions options = small_render("illuminant-mixture:8", 4, 4, 1, 0.1, 4);
     options.seed = 5;
     Renderer renderer(scene, options, test_device());
     const double expected = half_squared_difference(pass_of(renderer, {0, 77, 0, 5}), pass_of(renderer, {1, 77, 0, 5}));
     options.auto_method = true;
     const MethodChoice choice = choose(scene, options, {100, {}});
     const MethodTrial& trial = choice.trials.front();
-    EXPECT_EQ(trial.method.name(), "illuminant-mixture:4");
+    EXPECT_EQ(trial.method.name(), "illuminant-mixture:8");
     EXPECT_GT(expected, 0.0);
     // Images are floats near 1; their differences carry a rounding each.
     EXPECT_NEAR(trial.wavelength_variance, expected, 1e-3 * expected);
@@ -88,7 +88,7 @@ TEST(ChooseMethod, AMirrorsVarianceIsThatOfItsWavelengths) {
 /// The trial's estimate is one of those that other paths give.
 TEST(ChooseMethod, PathVarianceIsThatOfPassesWithTheSameWavelengths) {
     const Scene scene = floor_alone();
-    RenderOptions options = small_render("illuminant-mixture:4", 32, 32, 1, 0.1, 4);
+    RenderOptions options = small_render("illuminant-mixture:8", 32, 32, 1, 0.1, 4);
     options.seed = 9;
     Renderer renderer(scene, options, test_device());
     kernel_test::Moments estimates;
@@ -116,8 +116,8 @@ std::vector<std::string> tried(const MethodChoice& choice) {
 
 class EveryScene : public testing::TestWithParam<std::string> {};
 
-/// Whatever the scene, what is chosen is unbiased and predicts the least error of what was tried; one wavelength is
-/// tried where surfaces disperse, and nowhere else.
+/// Whatever the scene, what is chosen is unbiased and predicts the least error of what was tried, but for the 2 % that
+/// a later one must be better by; one wavelength is tried where surfaces disperse, and nowhere else.
 TEST_P(EveryScene, ChoosesTheLeastPredictedErrorOfUnbiasedMethods) {
     const Scene scene = load_scene(TRISTIM_SOURCE_DIR "/meshes/" + GetParam());
     RenderOptions options = small_render("illuminant-mixture:4", 16, 16, 1024, 0.2, 8);
@@ -125,10 +125,16 @@ TEST_P(EveryScene, ChoosesTheLeastPredictedErrorOfUnbiasedMethods) {
     const double seconds = 300.0; // so long that all trials are affordable
     const MethodChoice choice = choose(scene, options, {{}, seconds});
     EXPECT_EQ(choice.budget_seconds, seconds);
+    const std::vector<std::string> names = tried(choice);
     const auto error = [&](const MethodTrial& trial) { return trial.error_after(seconds / trial.pass_seconds, false); };
-    const auto best = std::min_element(choice.trials.begin(), choice.trials.end(),
-                                       [&](const auto& a, const auto& b) { return error(a) < error(b); });
+    const MethodTrial* best = &choice.trials.front();
+    for (const MethodTrial& trial : choice.trials) {
+        if (error(trial) < 0.98 * error(*best))
+            best = &trial;
+    }
     EXPECT_EQ(choice.method.name(), best->method.name());
+    EXPECT_EQ(names.front(), "illuminant-mixture:8");
+    EXPECT_GE(names.size(), 2U);
     double total = 0.0;
     for (const MethodTrial& trial : choice.trials) {
         EXPECT_TRUE(trial.method.unbiased()) << trial.method.name();
@@ -137,7 +143,6 @@ TEST_P(EveryScene, ChoosesTheLeastPredictedErrorOfUnbiasedMethods) {
         total += (trial.method.wavelengths() == 1 ? 8.0 : 4.0) * trial.pass_seconds;
     }
     EXPECT_GE(choice.seconds, total) << "each trial is four passes, or eight";
-    const std::vector<std::string> names = tried(choice);
     const bool one = std::find(names.begin(), names.end(), "illuminant-mixture:1") != names.end();
     EXPECT_EQ(one, derive_effects(scene).dispersion);
     const std::string text = describe(choice);
@@ -159,10 +164,10 @@ TEST(ChooseMethod, OneWavelengthHasLessPathVarianceBehindDispersiveGlassAndMoreO
         const MethodChoice choice = choose(scene_of(name), options, {500, {}});
         return std::pair(choice.trials[0].path_variance, choice.trials[1].path_variance);
     };
-    const auto [four, one] = variances("dispersion", 0.12);
-    EXPECT_LT(one, four);
-    const auto [four_on_screen, one_on_screen] = variances("prism", 0.05);
-    EXPECT_GT(one_on_screen, four_on_screen);
+    const auto [eight, one] = variances("dispersion", 0.12);
+    EXPECT_LT(one, eight);
+    const auto [eight_on_screen, one_on_screen] = variances("prism", 0.05);
+    EXPECT_GT(one_on_screen, eight_on_screen);
 }
 
 TEST(ChooseMethod, RendererRefusesAMethodThatIsStillToBeChosen) {

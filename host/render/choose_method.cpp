@@ -7,18 +7,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 // What is tried: illuminant-mixture:C, of the samplers in kernels/samplers/ the one that varies least under lamps of
-// lines. (Under smooth light others may vary less, in a term that falls as the square of the passes.) First C as wide
-// as the narrowest vectors, then twice as many as long as that lowers the predicted error, since wavelengths at equal
-// distances vary less the more there are. Paths that a dispersive surface leaves with one of C wavelengths may lose by
-// a larger C: then one wavelength is tried too. Samplers that do not know the light are not tried: a trial of a few
-// wavelengths that miss the lines of a lamp would take its darkness for a lack of variance.
+// lines. (Under smooth light others may vary less, in a term that falls as the square of the passes.) First C = 8, the
+// best or near it wherever no surface disperses (bench/methods). Where surfaces disperse, paths keep one of C
+// wavelengths and may lose by a larger C: then a single one. Then four, which may trace faster. If none of these is
+// better, twice as many as long as that pays, since wavelengths at equal distances vary less the more there are.
+// Samplers that do not know the light are not tried: a trial of a few wavelengths that miss the lines of a lamp would
+// take its darkness for a lack of variance.
 
 namespace tristim {
 namespace {
 
-constexpr int narrowest = 4; ///< the lanes of a vector
+constexpr int usual = 8;
+constexpr int narrow = 4; ///< the lanes of a narrow vector
 constexpr int widest = 64;
 /// Sets of wavelengths that a trial sees, each with two sets of paths; more where a set is a single wavelength.
 constexpr int least_sets = 2;
@@ -27,8 +30,8 @@ constexpr double most_trial_share = 0.1;
 /// Search radii are those of the middle of the render, but not of a later pass than this: they hardly shrink from
 /// there.
 constexpr double last_typical_pass = 1000.0;
-/// By how much more wavelengths must lower the predicted error to be worth a further trial.
-constexpr double worthwhile = 0.99;
+/// The predicted error of another C over that of the best so far, below which it is taken: what a few passes can tell.
+constexpr double worthwhile = 0.98;
 
 /// The variances of pairs of images: each pair has wavelengths of its own, the two of a pair different paths.
 class Pairs {
@@ -81,18 +84,31 @@ class Trials {
         options_.auto_method = false;
     }
 
-    /// Tries the method and notes it; its predicted error.
-    double operator()(const Method& method) {
+    /// Tries the method; whether it is worthwhile over the best so far, and then chosen.
+    bool operator()(const Method& method) {
         options_.method = method;
         Renderer renderer(scene_, options_, device_);
         if (choice.trials.empty())
             fix_budget(renderer);
         MethodTrial& trial = choice.trials.emplace_back(measure(renderer));
-        trial.predicted_error = trial.error_after(choice.budget_seconds / trial.pass_seconds, options_.random_sequence);
-        return trial.predicted_error;
+        trial.predicted_error = error_of(trial);
+        const bool better = trial.predicted_error < worthwhile * least_error_;
+        if (better) {
+            least_error_ = trial.predicted_error;
+            choice.method = method;
+        }
+        return better;
     }
 
     bool affordable() const { return choice.seconds < most_trial_share * choice.budget_seconds; }
+
+    /// Whether twice the wavelengths of `wide` may be worthwhile: at best theirs no longer vary, a pass takes as long,
+    /// and paths vary as they did for half as many, `narrow`, and `wide`, by a term as 1/C.
+    bool doubling_may_pay(const MethodTrial& narrow, MethodTrial wide) const {
+        wide.wavelength_variance = 0.0;
+        wide.path_variance = std::max(0.0, 1.5 * wide.path_variance - 0.5 * narrow.path_variance);
+        return error_of(wide) < worthwhile * least_error_;
+    }
 
     MethodChoice choice;
 
@@ -110,6 +126,10 @@ class Trials {
             static_cast<std::uint32_t>(std::min(0.5 * choice.budget_seconds / pass_seconds, last_typical_pass));
     }
 
+    double error_of(const MethodTrial& trial) const {
+        return trial.error_after(choice.budget_seconds / trial.pass_seconds, options_.random_sequence);
+    }
+
     MethodTrial measure(Renderer& renderer) {
         MethodTrial trial{renderer.options().method, 0.0, 0.0, std::numeric_limits<double>::infinity()};
         const auto image = [&](std::uint32_t set, std::uint32_t seed) {
@@ -120,7 +140,7 @@ class Trials {
             choice.seconds += seconds;
             return xyz_image(renderer.film()).xyz;
         };
-        const int sets = std::max(least_sets, narrowest / trial.method.wavelengths());
+        const int sets = std::max(least_sets, narrow / trial.method.wavelengths());
         Pairs pairs;
         // The paths' seeds are those of no repeat of a bench: they count down from the complement.
         for (std::uint32_t set = 0; set < static_cast<std::uint32_t>(sets); ++set)
@@ -135,6 +155,7 @@ class Trials {
     const Device& device_;
     RenderBudget budget_;
     std::uint32_t typical_pass_ = 0;
+    double least_error_ = std::numeric_limits<double>::infinity();
 };
 
 } // namespace
@@ -146,26 +167,23 @@ double MethodTrial::error_after(double passes, bool random_sequence) const {
 
 MethodChoice choose_method(const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options,
                            const Device& device, const RenderBudget& budget, const TrialCallback& may_try) {
-    const auto with = [](int count) { return Method{Method::Kind::IlluminantMixture, count}; };
     Trials trials(scene, options, device, budget);
-    trials.choice.method = with(narrowest);
-    double best = std::numeric_limits<double>::infinity();
-    // Whether C = count is better by what makes a further trial worthwhile.
-    const auto try_count = [&](int count) {
-        const bool first = trials.choice.trials.empty();
-        if (!may_try(with(count)) || !(first || trials.affordable()))
-            return false;
-        const double error = trials(with(count));
-        const bool better = error < worthwhile * best;
-        if (error < best) {
-            best = error;
-            trials.choice.method = with(count);
-        }
-        return better;
-    };
-    if (!try_count(narrowest) || (scene->effects().dispersion && try_count(1)))
+    std::vector<MethodTrial>& tried = trials.choice.trials;
+    const auto with = [](int count) { return Method{Method::Kind::IlluminantMixture, count}; };
+    trials.choice.method = with(usual);
+    const auto may = [&](int count) { return may_try(with(count)) && (tried.empty() || trials.affordable()); };
+    if (!may(usual))
         return std::move(trials.choice);
-    for (int wider = 2 * narrowest; wider <= widest && try_count(wider); wider *= 2) {
+    trials(with(usual));
+    if (scene->effects().dispersion && (!may(1) || trials(with(1))))
+        return std::move(trials.choice);
+    if (!may(narrow) || trials(with(narrow)))
+        return std::move(trials.choice);
+    MethodTrial half = tried.back(), whole = tried.front();
+    for (int count = 2 * usual; count <= widest && trials.doubling_may_pay(half, whole); count *= 2) {
+        if (!may(count) || !trials(with(count)))
+            break;
+        half = std::exchange(whole, tried.back());
     }
     return std::move(trials.choice);
 }
@@ -178,8 +196,9 @@ std::string describe(const MethodChoice& choice) {
         text += fmt::format("auto: {:<24}{:>9.1f}  {:>21.4g}  {:>21.4g}  {:>20.4g}\n", trial.method.name(),
                             1e3 * trial.pass_seconds, trial.path_variance, trial.wavelength_variance,
                             trial.predicted_error);
-    return text + fmt::format("auto: chose {}, the least noise of these after {:.3g} s; {:.2g} s of trial passes\n",
-                              choice.method.name(), choice.budget_seconds, choice.seconds);
+    return text + fmt::format(
+                      "auto: chose {}, the least noise after {:.3g} s, or within 2 % of it; {:.2g} s of trial passes\n",
+                      choice.method.name(), choice.budget_seconds, choice.seconds);
 }
 
 } // namespace tristim

@@ -36,9 +36,10 @@ struct MethodChoice {
 using TrialCallback = std::function<bool(const Method&)>;
 
 /// Tries unbiased methods on the scene, each in a few passes, and chooses the one that predicts the least error when
-/// the budget is spent (of passes: the time that they take by the first method tried). No further one is tried once
-/// trials have taken a tenth of it. What is tried follows from the scene: see the .cpp file. Methods whose predictions
-/// differ by less than the machine's timing may change places from run to run. Throws Error as Renderer does.
+/// the budget is spent (of passes: the time that they take by the first method tried), or the one tried before it, if
+/// that predicts hardly more. No further one is tried once trials have taken a tenth of the budget. What is tried
+/// follows from the scene: see the .cpp file. Methods whose predictions differ by less than the machine's timing may
+/// change places from run to run. Throws Error as Renderer does.
 MethodChoice choose_method(
     const std::shared_ptr<const DeviceScene>& scene, const RenderOptions& options, const Device& device,
     const RenderBudget& budget, const TrialCallback& may_try = [](const Method&) { return true; });
