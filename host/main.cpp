@@ -11,6 +11,7 @@
 #include "commands/reference.h"
 #include "commands/render.h"
 #include "commands/report.h"
+#include "commands/selftest.h"
 #include "commands/spectra.h"
 #include "opencl/errors.h"
 
@@ -52,6 +53,7 @@ int run(int argc, char** argv) {
     tristim::add_reference_command(app);
     tristim::add_methods_command(app);
     tristim::add_devices_command(app);
+    tristim::add_selftest_command(app);
     tristim::add_compare_command(app);
     tristim::add_film_command(app);
     tristim::add_spectra_command(app);

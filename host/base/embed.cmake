@@ -1,5 +1,5 @@
 # Writes OUTPUT, a C++ file that holds the Chart.js library (file CHART_JS) and, from the folder ROOT, every kernel source, every spectral table, the plotting scripts and what reports consist of as text.
-file(GLOB FILES RELATIVE ${ROOT} ${ROOT}/kernels/*.cl ${ROOT}/kernels/*.h ${ROOT}/kernels/samplers/*.h
+file(GLOB FILES RELATIVE ${ROOT} ${ROOT}/kernels/*.cl ${ROOT}/kernels/*.h ${ROOT}/kernels/samplers/*.h ${ROOT}/kernels/selftest/*.cl
      ${ROOT}/host/spectra/data/*.spd
      ${ROOT}/host/plot/*.py ${ROOT}/host/report/*.html ${ROOT}/host/report/*.css ${ROOT}/host/report/*.js)
 list(SORT FILES)
