@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "commands/render_arguments.h"
+#include "commands/device_options.h"
 #include "commands/status_line.h"
 #include "image/output_file.h"
 #include "selftest/selftest.h"
