@@ -54,7 +54,9 @@ TEST_P(Samplers, ConvergeToTheSpectralImage) {
     constexpr int block = 8;
     std::uint32_t seed = 1;
     const auto render = [&](const Method& method, bool random) {
-        const int seeds = method.wavelengths() == 1 ? 2 * runs : runs; // one wavelength varies most
+        // One wavelength varies most; and photons that dispersive glass left with one of 400 are so rare that the means
+        // of few renders are not normal.
+        const int seeds = runs * (method.wavelengths() == 1 ? 2 : method.wavelengths() == 400 && !of.lines ? 6 : 1);
         RenderOptions options = small_render(method.name(), 32, 32, 8192, of.radius, 12);
         options.random_sequence = random;
         seed += 1000; // others for each method, so that the sets are independent
