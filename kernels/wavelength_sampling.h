@@ -14,6 +14,7 @@
 #define LAMBDA_MAX 780.0f
 #define LAMBDA_BINS 400
 #define SOBOL_DEGREE 5u
+#define CDF_FLOATS (2 * (LAMBDA_BINS + 1))  // of the table, for each CDF
 #define WITHIN_BIN (1.0f - 0x1p-14f)  // the farthest in a bin that does not round up into the next
 
 typedef struct Sampler {
@@ -22,12 +23,12 @@ typedef struct Sampler {
     const global float* table;     // what host/render/sampler_table.cpp adds for this sampler
 } Sampler;
 
-// A number in [0, 1) for a pass: with --sequence random a new one for each index, else the pass's point of a Sobol' sequence, the
-// same for all, with a random digital shift. Its dimension is the ninth of Joe & Kuo 2008 (of the polynomial x⁵ + x³ + 1),
-// behind the eight of the camera paths, with which wavelengths are so stratified too.
-float pass_position(uint seed, uint pass, uint index) {
+// A number in [0, 1) for a pass, as a binary fraction of 32 digits: with --sequence random a new one for each index, else the
+// pass's point of a Sobol' sequence, the same for all, with a random digital shift. Its dimension is the ninth of Joe & Kuo 2008 (of
+// the polynomial x⁵ + x³ + 1), behind the eight of the camera paths, with which wavelengths are so stratified too.
+uint pass_position(uint seed, uint pass, uint index) {
 #if SEQUENCE_RANDOM
-    return random4(seed, pass, index, STREAM_WAVELENGTHS).x;
+    return pcg4d((uint4)(index, STREAM_WAVELENGTHS, pass, seed)).x;
 #else
     uint last[SOBOL_DEGREE] = {1u << 31, 1u << 30, 5u << 29, 5u << 28, 5u << 27};  // direction numbers
     uint x = pcg4d((uint4)(0u, STREAM_WAVELENGTHS, 0u, seed)).x;
@@ -37,18 +38,18 @@ float pass_position(uint seed, uint pass, uint index) {
             last[k] = last[k] ^ last[k] >> SOBOL_DEGREE ^ last[(k + 3u) % SOBOL_DEGREE];
         x ^= pass >> bit & 1u ? last[k] : 0u;
     }
-    return unit_float(x);
+    return x;
 #endif
 }
 
-// Sample j of n at equal distances in [0, 1), one position v for all: (j + v)/n. As a set this is the rotation of one sample in steps of
-// 1/n around [0, 1).
-float rotated_position(uint seed, uint pass, uint j, uint n) {
-    return min(((float)j + pass_position(seed, pass, 0u)) / (float)n, 0x1.fffffep-1f);
+// Sample j of n at equal distances in [0, 1), one position v for all: (j + v)/n, rounded down. As a set this is the rotation of one
+// sample in steps of 1/n around [0, 1). Over all v each of the 2^32 values comes up n times, so that no bin gains or loses.
+uint rotated_position(uint seed, uint pass, uint j, uint n) {
+    return (uint)(((ulong)j << 32 | pass_position(seed, pass, 0u)) / n);
 }
 
 // Sample j of n: n independent numbers with --sequence random, else at equal distances.
-float sample_position(uint seed, uint pass, uint j, uint n) {
+uint sample_position(uint seed, uint pass, uint j, uint n) {
 #if SEQUENCE_RANDOM
     return pass_position(seed, pass, j);
 #else
@@ -64,19 +65,26 @@ float3 colour_matching(const Sampler* s, float lambda) {
     return (float3)(bin[0], bin[LAMBDA_BINS], bin[2 * LAMBDA_BINS]);
 }
 
-// λ at a value u of the CDF: bins hold the fraction cdf[i+1] - cdf[i], evenly within, which is also the pdf [1/nm]. λ never rounds
-// up into the next bin, whose light may be brighter than that pdf expects by orders of magnitude.
-float invert_cdf(const global float* cdf, float u, float* pdf) {
+// The CDF at a border of bins in units of 2^-31: the table holds the upper digits and the lower eight, since no float holds all.
+uint cdf_at(const global float* cdf, int border) { return (uint)cdf[2 * border] << 8 | (uint)cdf[2 * border + 1]; }
+
+// λ at a position on the CDF: bins hold the fraction cdf_at(i + 1) - cdf_at(i), evenly within, which is also the pdf [1/nm] and
+// exactly the share of all positions that leads there; with a CDF in float, bins of less than 2^-24 would be left out. λ never
+// rounds up into the next bin, whose light may be brighter than that pdf expects by orders of magnitude.
+float invert_cdf(const global float* cdf, uint position, float* pdf) {
+    const uint u = position >> 1;
     int low = 0, high = LAMBDA_BINS;
     while (high - low > 1) {
         const int middle = (low + high) / 2;
-        if (cdf[middle] <= u)
+        if (cdf_at(cdf, middle) <= u)
             low = middle;
         else
             high = middle;
     }
-    *pdf = cdf[low + 1] - cdf[low];
-    return LAMBDA_MIN + (float)low + clamp((u - cdf[low]) / *pdf, 0.0f, WITHIN_BIN);
+    const uint below = cdf_at(cdf, low);
+    const float share = (float)(cdf_at(cdf, low + 1) - below);
+    *pdf = share * 0x1p-31f;
+    return LAMBDA_MIN + (float)low + clamp((float)(u - below) / share, 0.0f, WITHIN_BIN);
 }
 
 // λ with the pdf of Radziszewski et al. 2009, near the eye's sensitivity and invertible: p(λ) ∝ 1/cosh²(0.0072 (λ - 538 nm)).

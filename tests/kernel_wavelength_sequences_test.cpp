@@ -22,10 +22,10 @@ const char* const source = R"(
 #include "wavelengths.cl"
 kernel void invert(const global float* cdf, const global float* u, global float* lambda) {
     float pdf;
-    lambda[get_global_id(0)] = invert_cdf(cdf, u[get_global_id(0)], &pdf);
+    lambda[get_global_id(0)] = invert_cdf(cdf, (uint)(u[get_global_id(0)] * 0x1p32f), &pdf);
 }
 kernel void positions(uint seed, uint set, uint sets, global float* out) {
-    out[get_global_id(0)] = sample_position(seed, (uint)get_global_id(0), set, sets);
+    out[get_global_id(0)] = unit_float(sample_position(seed, (uint)get_global_id(0), set, sets));
 }
 )";
 
@@ -46,10 +46,10 @@ double cumulative(std::size_t channel, double lambda) {
 
 std::vector<float> invert(std::size_t channel, const std::vector<float>& u) {
     const std::vector<float> table = sampler_table({Method::Kind::Tristimulus, 1}, {});
-    const auto begin = table.begin() + static_cast<std::ptrdiff_t>(3 * lambda_bins + channel * (lambda_bins + 1));
+    const auto begin = table.begin() + static_cast<std::ptrdiff_t>(3 * lambda_bins + channel * 2 * (lambda_bins + 1));
     const Buffer<float> output = make_buffer<float>(u.size());
-    run(build_test_program(source), "invert", u.size(), upload(std::vector<float>(begin, begin + lambda_bins + 1)),
-        upload(u), output);
+    run(build_test_program(source), "invert", u.size(),
+        upload(std::vector<float>(begin, begin + 2 * (lambda_bins + 1))), upload(u), output);
     return output.read(test_device());
 }
 
@@ -68,9 +68,9 @@ TEST(KernelWavelengthSequences, InverseCdfInvertsTheCdf) {
                 ASSERT_GE(lambda[i], lambda[i - 1])
                     << channel_names[channel] << ", u = " << u[i] << " must not go back";
             }
-            // The table's values are rounded once (half a unit of 1), λ to 2^-15 nm or less, times the density per nm.
+            // λ is rounded to 2^-15 nm or less, times the density per nm; table and u have steps of 2^-31.
             constexpr double highest_density = 0.03;
-            constexpr double tolerance = 3.0 * unit_roundoff + 2.0 * 0x1p-15 * highest_density;
+            constexpr double tolerance = 2.0 * 0x1p-31 + 2.0 * 0x1p-15 * highest_density;
             ASSERT_NEAR(cumulative(channel, lambda[i]), u[i], tolerance)
                 << channel_names[channel] << ", λ = " << lambda[i];
         }
@@ -150,9 +150,9 @@ TEST(KernelWavelengthSequences, StratifiedSequenceFillsEverySet) {
                     std::vector<double> points;
                     for (const float position : positions(false, seed, set, sets, passes)) {
                         const double within = double{position} * sets - set;
-                        // One rounding of (set + v), one of the quotient; in units of a set.
-                        ASSERT_GE(within, -2.0 * unit_roundoff * sets) << "set " << set << " of " << sets;
-                        ASSERT_LE(within, 1.0 + 2.0 * unit_roundoff * sets) << "set " << set << " of " << sets;
+                        // Cut off to 24 digits; in units of a set.
+                        ASSERT_GE(within, -unit_roundoff * sets) << "set " << set << " of " << sets;
+                        ASSERT_LT(within, 1.0) << "set " << set << " of " << sets;
                         ASSERT_LT(position, 1.0F);
                         points.push_back(within);
                     }

@@ -23,10 +23,12 @@ WavelengthBins normalised(WavelengthBins bins) {
     return bins;
 }
 
-/// (1 - d) f S/Σ f S + d f/Σ f for the defensive share d.
+/// (1 - d) f S/Σ f S + d f/Σ f for the defensive share d; f/Σ f where the light is none that f sees.
 WavelengthBins lit(const WavelengthBins& matching, const WavelengthBins& emission) {
     WavelengthBins product{};
     std::transform(matching.begin(), matching.end(), emission.begin(), product.begin(), std::multiplies<>());
+    if (total(product) == 0.0)
+        return normalised(matching);
     const WavelengthBins of_light = normalised(product), plain = normalised(matching);
     for (std::size_t i = 0; i < product.size(); ++i)
         product[i] = (1.0 - defensive_share) * of_light[i] + defensive_share * plain[i];
@@ -122,15 +124,18 @@ Xyz SamplerOracle::weight(int slot, double lambda) const {
     return xyz;
 }
 
-/// λ is rounded to 2^-15 nm, and kept 2^-14 nm away from the next bin. The position is exact, a table's values are
-/// rounded by 2^-25. Of the closed form, OpenCL grants tanh and atanh 5 units in the last place each: two tanh and
-/// three more roundings of values below 1, then atanh, of which d tanh/dx <= 1 leaves 5 · 2^-23 at most.
+/// λ is rounded to 2^-15 nm, and kept 2^-14 nm away from the next bin. A table's values and positions on it have steps
+/// of 2^-31, of which six dark bins in a row may need one each; other positions are cut off to 2^-24. Of the closed
+/// form, OpenCL grants tanh and atanh 5 units in the last place each: two tanh and three more roundings of values below
+/// 1, then atanh, of which d tanh/dx <= 1 leaves 5 · 2^-23 at most.
 double SamplerOracle::cdf_error(std::size_t row, double lambda) const {
     const double of_lambda = pdf(row, lambda) * (0x1p-15 + 0x1p-14);
-    return of_lambda + (form_ == Form::Visible ? (5.0 + 5.0 + 3.0 + 10.0) * unit_roundoff : 2.0 * unit_roundoff);
+    return of_lambda + (form_ == Form::Visible ? (5.0 + 5.0 + 3.0 + 10.0) * unit_roundoff
+                        : form_ == Form::Bins  ? 8.0 * 0x1p-31
+                                               : unit_roundoff);
 }
 
-/// A pdf from a table is the difference of two values, rounded by 2^-25 each. That of the closed form is
+/// A pdf from a table is the difference of two values, rounded to 2^-31. That of the closed form is
 /// s (1 - t²)/(last - first): t and λ belong together up to cdf_error, over which p changes by 2 s |t| dλ; one rounding
 /// of 1 - t², which is 0.11 at least; and both tanh in the range of 1.75. Beside that, four roundings. The plain
 /// tristimulus has no pdf in its weights.
@@ -139,7 +144,7 @@ double SamplerOracle::weight_error(std::size_t row, double lambda) const {
     if (form_ == Form::Uniform || method_.kind == Method::Kind::Tristimulus)
         return operations;
     if (form_ == Form::Bins)
-        return operations + unit_roundoff / pdf(row, lambda);
+        return operations + 0x1p-31 / pdf(row, lambda);
     const double off_nm = cdf_error(row, lambda) / pdf(row, lambda);
     return operations + 2.0 * slope * off_nm + unit_roundoff / 0.11 + 10.0 / 1.75 * unit_roundoff;
 }
@@ -169,7 +174,7 @@ SamplerOracle::Integral SamplerOracle::integral(std::size_t channel, const Wavel
         const double p1 = form_ == Form::Visible ? pdf(row, low_nm + 0.5) : p0;
         if (p0 <= 0.0)
             continue; // no position leads here
-        // Both ends of a bin on the CDF are rounded by 2^-25, and so are the positions.
+        // Both ends of a bin on the CDF may be off by a step of the positions.
         result.rounding += 0.5 * radiance * std::max(r0, r1) * std::min(1.0, 2.0 * unit_roundoff / std::min(p0, p1));
         const double first = radiance * r0 / p0, last = radiance * r1 / p1;
         if (any)

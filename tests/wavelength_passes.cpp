@@ -92,7 +92,7 @@ std::vector<float> draw_positions(bool random_sequence, bool rotated, std::uint3
 #include "wavelength_sampling.h"
 kernel void positions(uint seed, uint pass, uint parts, int rotated, global float* out) {
     const uint j = (uint)get_global_id(0);
-    out[j] = rotated ? rotated_position(seed, pass, j, parts) : sample_position(seed, pass, j, parts);
+    out[j] = unit_float(rotated ? rotated_position(seed, pass, j, parts) : sample_position(seed, pass, j, parts));
 }
 )",
                                                      {{"SEQUENCE_RANDOM", random_sequence ? "1" : "0"}});

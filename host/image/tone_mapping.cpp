@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace tristim {
 namespace {
@@ -20,6 +21,12 @@ struct LuminanceRange {
     double log_average = 0.0; ///< 0 if no pixel is lit
     double highlight = 0.0;
 };
+
+/// Exposures of thousands of stops leave the range of double; what they show is black or white all the same.
+double usable_scale(double scale) {
+    using Double = std::numeric_limits<double>;
+    return std::clamp(scale, Double::min(), Double::max());
+}
 
 LuminanceRange luminance_range(const XyzImage& image) {
     std::vector<double> lit;
@@ -48,24 +55,24 @@ LuminanceRange luminance_range(const XyzImage& image) {
 } // namespace
 
 ToneCurve::ToneCurve(const XyzImage& image, const ToneMapping& mapping)
-    : scale_(std::exp2(mapping.exposure)), compresses_(mapping.kind == ToneMapping::Kind::Photographic) {
+    : scale_(usable_scale(std::exp2(mapping.exposure))), compresses_(mapping.kind == ToneMapping::Kind::Photographic) {
     if (!compresses_)
         return;
     const LuminanceRange range = luminance_range(image);
     if (range.log_average <= 0.0)
         return;
     const double key_scale = key / range.log_average;
-    scale_ *= key_scale;
+    scale_ = usable_scale(scale_ * key_scale);
     const double white = std::max(1.0, key_scale * range.highlight);
     inverse_white_squared_ = 1.0 / (white * white);
 }
 
-/// Y' / Y, which stays finite where Y vanishes.
+/// Y' / Y, which stays finite where Y vanishes and where scale_ · Y overflows.
 double ToneCurve::gain(double y) const {
     if (!compresses_)
         return scale_;
     const double l = scale_ * std::max(y, 0.0);
-    return scale_ * (1.0 + l * inverse_white_squared_) / (1.0 + l);
+    return scale_ * (inverse_white_squared_ + (1.0 - inverse_white_squared_) / (1.0 + l));
 }
 
 double ToneCurve::operator()(double y) const {

@@ -4,6 +4,8 @@
 #include "spectra/gauss_rule.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numeric>
 
@@ -43,16 +45,33 @@ class Table {
         for (const double value : list)
             append(value);
     }
-    /// lambda_bins + 1 values, from 0 to 1.
+    /// lambda_bins + 1 values from 0 to 2^31, of each the digits above the last eight, then these. Every bin that is
+    /// not empty has a share, so that the sampler leaves out no light.
     void append_cdf(const WavelengthBins& bins) {
+        constexpr double whole = 0x1p31;
         const double total = sum(bins);
+        auto left = std::count_if(bins.begin(), bins.end(), [](double value) { return value > 0.0; });
         double below = 0.0;
-        append(0.0);
-        for (const double value : bins)
-            append((below += value) / total);
+        std::int64_t border = 0;
+        append_border(border);
+        for (const double value : bins) {
+            below += value;
+            if (value > 0.0) {
+                --left;
+                border = std::clamp<std::int64_t>(std::llround(below / total * whole), border + 1,
+                                                  static_cast<std::int64_t>(whole) - left);
+            }
+            append_border(border);
+        }
     }
 
     std::vector<float> values;
+
+  private:
+    void append_border(std::int64_t border) {
+        append(static_cast<double>(border >> 8));
+        append(static_cast<double>(border & 255));
+    }
 };
 
 } // namespace

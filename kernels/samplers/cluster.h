@@ -4,7 +4,7 @@
 // not depend on the wavelength; at smooth dispersive surfaces q is zero but for the steering one, which keeps all C shares.
 float sample_wavelength(const Sampler* s, int w, float3* weight) {
     float pdf;
-    const float lambda = invert_visible(sample_position(s->seed, s->pass, (uint)w, W), &pdf);
+    const float lambda = invert_visible(unit_float(sample_position(s->seed, s->pass, (uint)w, W)), &pdf);
     *weight = colour_matching(s, lambda) / (pdf * (float)W);
     return lambda;
 }

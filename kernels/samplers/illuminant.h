@@ -4,8 +4,8 @@
 float sample_wavelength(const Sampler* s, int w, float3* weight) {
     const int channel = w % 3;
     float pdf;
-    const float u = sample_position(s->seed, s->pass, (uint)(w / 3), W / 3);
-    const float lambda = invert_cdf(s->table + channel * (LAMBDA_BINS + 1), u, &pdf);
+    const uint u = sample_position(s->seed, s->pass, (uint)(w / 3), W / 3);
+    const float lambda = invert_cdf(s->table + channel * CDF_FLOATS, u, &pdf);
     const float3 f = colour_matching(s, lambda) / (pdf * (float)(W / 3));
     *weight = (float3)(channel == 0 ? f.x : 0.0f, channel == 1 ? f.y : 0.0f, channel == 2 ? f.z : 0.0f);
     return lambda;

@@ -2,7 +2,7 @@
 // Jakob & Humphreys 2023); the pdf is that of Radziszewski et al. 2009, here over 380 to 780 nm.
 float sample_wavelength(const Sampler* s, int w, float3* weight) {
     float pdf;
-    const float lambda = invert_visible(rotated_position(s->seed, s->pass, (uint)w, W), &pdf);
+    const float lambda = invert_visible(unit_float(rotated_position(s->seed, s->pass, (uint)w, W)), &pdf);
     *weight = colour_matching(s, lambda) / (pdf * (float)W);
     return lambda;
 }
