@@ -133,7 +133,7 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
         if (reflected) {
             scattered = reflect(*direction, m, cos_i);
         } else {
-            const float cos2_t = 1.0f - (1.0f - cos_i) * (1.0f + cos_i) * inverse_eta * inverse_eta;
+            const float cos2_t = refracted_cosine_squared(cos_i, inverse_eta);
             if (cos2_t <= 0.0f || material->kind != MATERIAL_DIELECTRIC)
                 return false;  // nothing is transmitted
             scattered = refract(*direction, m, inverse_eta, cos_i, sqrt(cos2_t));

@@ -88,13 +88,17 @@ float3 reflection_half_vector(float3 wo, float3 wi) { return unit_vector(wo + wi
 // The facet that refracts wo to wi, turned so that m.z >= 0 (Walter et al. 2007, eq. 16). It refracts only if
 // wo·m > 0 > wi·m. fma rounds once, so that the components of a sum that nearly cancels are still right.
 float3 refraction_half_vector(float3 wo, float3 wi, float eta) {
-    const float3 sum = unit_vector(fma((float3)(eta), wi, wo));
-    return sum.z < 0.0f ? -sum : sum;
+    const float3 sum = fma((float3)(eta), wi, wo);
+    const float3 m = sum * (1.0f / sqrt(max(dot(sum, sum), FLT_MIN)));  // 0 if eta is 1 and wi = -wo
+    return m.z < 0.0f ? -m : m;
 }
 
-// dm/dwi of refraction (Walter et al. 2007, eq. 17), wo_m = wo·m, wi_m = wi·m. That of reflection is 1 / (4 wo·m).
+// dm/dwi of refraction, |wi·m| (eta / (wo·m + eta wi·m))² (Walter et al. 2007, eq. 17), wo_m = wo·m > 0 > wi_m = wi·m. That of
+// reflection is 1 / (4 wo·m). By Snell's law, which the three obey, the sum in it is (1 - eta²)/(wo·m - eta wi·m), where nothing
+// cancels. For eta = 1 its next neighbour stands, so that the lobe, then a single direction, stays finite.
 float refraction_jacobian(float wo_m, float wi_m, float eta) {
-    const float ratio = eta / fma(eta, wi_m, wo_m);
+    const float difference = max(fabs((eta - 1.0f) * (eta + 1.0f)), FLT_EPSILON);
+    const float ratio = eta * fma(-eta, wi_m, wo_m) / difference;
     return fabs(wi_m) * ratio * ratio;
 }
 
