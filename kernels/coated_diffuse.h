@@ -24,7 +24,7 @@ Spectrum body_reflectance(const Scene* scene, const global SurfaceMaterial* mate
         const ThinFilm film = {scene->film_layers + material->film, material->film_layers, thickness};
         const floatv f = is_tabulated(material, thickness)
                              ? tabulated_internal_reflectance(scene->pass_table, b, material, thickness)
-                             : internal_reflectance(scene->pass_table, b, &film, n);
+                             : internal_reflectance(scene->pass_table, b, &film, n, QUADRATURE_POINTS);
 #else
         const floatv f = tabulated_internal_reflectance(scene->pass_table, b, material, thickness);
 #endif

@@ -13,6 +13,8 @@ kernel void film_tables(const global SurfaceMaterial* materials, const global Sc
     const float thickness = material->internal_thickness + (float)row * material->internal_step;
     const ThinFilm film = {film_layers + material->film, material->film_layers, thickness};
     const floatv n = vloadv(block, spectrum_row(pass_table, material->eta));
-    const floatv reflectance = internal_reflectance(pass_table, block, &film, n);
+    // Many rows share what one may take.
+    const int most = max(MOST_QUADRATURE_POINTS * 16 / max(material->internal_rows, 16), QUADRATURE_POINTS);
+    const floatv reflectance = internal_reflectance(pass_table, block, &film, n, quadrature_points(&film, most));
     vstorev(reflectance, block, pass_table + (PASS_TABLE_SPECTRA + material->internal_reflectance + row) * W_PADDED);
 }

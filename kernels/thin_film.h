@@ -52,27 +52,38 @@ DoubleFloat sum_exactly(floatv a, floatv b, floatv low) {
     return result;
 }
 
-// β² = n0² - (n0 cos θ)²
-DoubleFloat tangential_squared(floatv n0, floatv cosine) {
+// β² = n0² - q0² with q0 = n0 cos θ, of the medium that light comes from.
+typedef struct Incidence {
+    floatv n;
+    DoubleFloat q2, beta2;
+} Incidence;
+
+Incidence incidence(floatv n0, floatv cosine) {
 #pragma OPENCL FP_CONTRACT OFF
-    const floatv square = n0 * n0, normal = n0 * cosine;
-    const floatv normal_low = fma(n0, cosine, -normal);
-    const floatv normal_square = normal * normal;
-    const floatv low = fma(n0, n0, -square) - fma(normal, normal, -normal_square) - 2.0f * normal * normal_low;
-    return sum_exactly(square, -normal_square, low);
+    const floatv square = n0 * n0;
+    const floatv q = n0 * cosine, q_low = fma(n0, cosine, -q);
+    Incidence first;
+    first.n = n0;
+    first.q2.high = q * q;
+    first.q2.low = fma(q, q, -first.q2.high) + 2.0f * q * q_low;
+    first.beta2 = sum_exactly(square, -first.q2.high, fma(n0, n0, -square) - first.q2.low);
+    return first;
 }
 
-// q² = n² - β² without absorption
-DoubleFloat normal_squared(floatv n, DoubleFloat beta2) {
+// q² = n² - β² without absorption. Of what equals the first medium it is the very q0², however small.
+DoubleFloat normal_squared(floatv n, Incidence first) {
 #pragma OPENCL FP_CONTRACT OFF
     const floatv square = n * n;
-    return sum_exactly(square, -beta2.high, fma(n, n, -square) - beta2.low);
+    DoubleFloat q2 = sum_exactly(square, -first.beta2.high, fma(n, n, -square) - first.beta2.low);
+    q2.high = n == first.n ? first.q2.high : q2.high;
+    q2.low = n == first.n ? first.q2.low : q2.low;
+    return q2;
 }
 
 // Re q² = n² - k² - β²
-DoubleFloat absorbing_normal_squared(floatv n, floatv k, DoubleFloat beta2) {
+DoubleFloat absorbing_normal_squared(floatv n, floatv k, Incidence first) {
 #pragma OPENCL FP_CONTRACT OFF
-    const DoubleFloat real = normal_squared(n, beta2);
+    const DoubleFloat real = normal_squared(n, first);
     const floatv square = k * k;
     return sum_exactly(real.high, -square, real.low - fma(k, k, -square));
 }
@@ -115,7 +126,8 @@ ComplexV multiply(ComplexV a, ComplexV b) {
 }
 floatv squared_modulus(ComplexV a) { return a.re * a.re + a.im * a.im; }
 
-#define SMALLEST_Q 1e-10f  // stands for 0, so that sin δ/q has its limit
+#define SMALLEST_Q 1e-10f       // stands for 0, so that sin δ/q has its limit
+#define SMALLEST_COSINE 1e-12f  // stands for 0, so that grazing light has its limit
 
 // The square root in the first quadrant; im must not be negative. The smaller part comes from the larger, without cancellation.
 ComplexV complex_sqrt(floatv re, floatv im) {
@@ -145,9 +157,9 @@ ComplexV field_above(floatv c, ComplexV f, floatv d, ComplexV x, ComplexV y) {
 // Takes the fields of both polarisations through a layer; *decay is multiplied by the squared scale that was left out. Inlined, a
 // film takes a quarter less time on PoCL.
 __attribute__((always_inline))
-void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, DoubleFloat beta2, float thickness,
+void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Incidence first, float thickness,
                  const Wavelength* wave) {
-    const DoubleFloat q2 = absorbing_normal_squared(n, k, beta2);
+    const DoubleFloat q2 = absorbing_normal_squared(n, k, first);
     const floatv q2_im = 2.0f * n * k;
     ComplexV q = complex_sqrt(q2.high, q2_im);
     // One step of Newton's method for the real part's low half.
@@ -194,9 +206,9 @@ Fields through_layer(Fields f, floatv cosine, floatv sine_over_eta, floatv eta_s
 }
 
 __attribute__((always_inline))
-void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, DoubleFloat beta2, float thickness,
+void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Incidence first, float thickness,
                  const Wavelength* wave) {
-    const DoubleFloat q2 = normal_squared(n, beta2);
+    const DoubleFloat q2 = normal_squared(n, first);
     const floatv magnitude = fabs(q2.high);
     const floatv q = max(sqrt(magnitude), SMALLEST_Q);
     const floatv epsilon = n * n;
@@ -226,13 +238,17 @@ void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Double
 }
 #endif
 
-// Both fields by the larger one's size: long stacks would overflow the square below.
-void rescale(Fields* f, floatv* transmitted) {
-    const floatv scale = 1.0f / max(max(fabs(f->u.re), fabs(f->u.im)), max(fabs(f->v.re), fabs(f->v.im)));
+#define SMALLEST_POWER 2e-38f  // of fields, so that its inverse is finite
+
+// Both fields by the larger one's size: long stacks would overflow the square below. Fields that are nothing stay so.
+void rescale(Fields* f, floatv decay, floatv* transmitted) {
+    const floatv largest = max(max(fabs(f->u.re), fabs(f->u.im)), max(fabs(f->v.re), fabs(f->v.im)));
+    const floatv scale = 1.0f / max(largest, 1e-12f);
     f->u.re *= scale;
     f->u.im *= scale;
     f->v.re *= scale;
     f->v.im *= scale;
+    *transmitted *= decay;
     *transmitted *= scale * scale;
 }
 
@@ -246,17 +262,17 @@ FilmOptics film_optics(const global float* pass_table, int block, const ThinFilm
     wave.inverse = 1.0f / wave.lambda;
     const floatv n0 = from_outside ? outside_eta : base_eta;
     const floatv n = from_outside ? base_eta : outside_eta;
-    const floatv cosine = max(cos_i, SMALLEST_Q);
+    const floatv cosine = max(cos_i, SMALLEST_COSINE);
     const floatv q0 = n0 * cosine, epsilon0 = n0 * n0;
-    const DoubleFloat beta2 = tangential_squared(n0, cosine);
+    const Incidence first = incidence(n0, cosine);
 
     ComplexV q, epsilon = {n * n, 0.0f};
     if (any(base_k > 0.0f)) {
         epsilon.re -= base_k * base_k;
         epsilon.im = 2.0f * n * base_k;
-        q = complex_sqrt(absorbing_normal_squared(n, base_k, beta2).high, epsilon.im);
+        q = complex_sqrt(absorbing_normal_squared(n, base_k, first).high, epsilon.im);
     } else {
-        const floatv q2 = normal_squared(n, beta2).high;
+        const floatv q2 = normal_squared(n, first).high;
         const floatv root = sqrt(fabs(q2));
         q.re = q2 >= 0.0f ? root : 0.0f;
         q.im = q2 >= 0.0f ? 0.0f : root;
@@ -270,21 +286,25 @@ FilmOptics film_optics(const global float* pass_table, int block, const ThinFilm
         const int layer = from_outside ? film->count - 1 - i : i;
         const global SceneFilmLayer* l = film->layers + layer;
         cross_layer(&s, &p, &decay, vloadv(block, spectrum_row(pass_table, l->eta)),
-                    vloadv(block, spectrum_row(pass_table, l->k)), beta2,
+                    vloadv(block, spectrum_row(pass_table, l->k)), first,
                     layer == 0 ? film->first_thickness : l->thickness, &wave);
         if (i % 8 == 7) {
-            rescale(&s, &transmitted_s);
-            rescale(&p, &transmitted_p);
+            rescale(&s, decay, &transmitted_s);
+            rescale(&p, decay, &transmitted_p);
+            decay = 1.0f;
         }
     }
     const ComplexV s_down = {q0 * s.u.re + s.v.re, q0 * s.u.im + s.v.im};
     const ComplexV s_up = {q0 * s.u.re - s.v.re, q0 * s.u.im - s.v.im};
     const ComplexV p_down = {epsilon0 * p.u.re + q0 * p.v.re, epsilon0 * p.u.im + q0 * p.v.im};
     const ComplexV p_up = {epsilon0 * p.u.re - q0 * p.v.re, epsilon0 * p.u.im - q0 * p.v.im};
-    const floatv inverse_s = 1.0f / squared_modulus(s_down), inverse_p = 1.0f / squared_modulus(p_down);
+    // Where a layer guides light behind an opaque one, the wave that grows upwards may vanish to the last digit, and with it every
+    // field above: nothing comes through, and all is reflected.
+    const floatv power_s = squared_modulus(s_down), power_p = squared_modulus(p_down);
+    const floatv inverse_s = 1.0f / max(power_s, SMALLEST_POWER), inverse_p = 1.0f / max(power_p, SMALLEST_POWER);
     FilmOptics optics;
-    optics.reflected_s = squared_modulus(s_up) * inverse_s;
-    optics.reflected_p = squared_modulus(p_up) * inverse_p;
+    optics.reflected_s = power_s < SMALLEST_POWER ? 1.0f : squared_modulus(s_up) * inverse_s;
+    optics.reflected_p = power_p < SMALLEST_POWER ? 1.0f : squared_modulus(p_up) * inverse_p;
     optics.transmitted_s = transmitted_s * decay * inverse_s;
     optics.transmitted_p = transmitted_p * decay * inverse_p;
     return optics;

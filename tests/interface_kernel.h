@@ -3,8 +3,8 @@
 // scatter and evaluate_rough of kernels/bsdf.h at surfaces with films, for tests.
 
 #include "kernel_harness.h"
+#include "selftest/film_oracle.h"
 #include "shared_types.h"
-#include "thin_film_oracle.h"
 
 #include <algorithm>
 #include <array>

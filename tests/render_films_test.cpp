@@ -2,7 +2,7 @@
 #include "image_statistics.h"
 #include "method_cases.h"
 #include "microfacet_oracle.h"
-#include "thin_film_oracle.h"
+#include "selftest/film_oracle.h"
 
 #include <cmath>
 #include <map>
@@ -25,8 +25,8 @@ int with_film(Scene& scene, int material, const std::vector<FilmLayer>& layers) 
 
 void add_facet_sphere(Scene& scene, const V3d& centre, double radius, int material) {
     add_sphere(scene, radius, 2, false, material);
-    for (V3f& position : scene.shapes.back().mesh.positions)
-        position += V3f(centre);
+    for (V3d& position : scene.shapes.back().mesh.positions)
+        position += centre;
 }
 
 /// Spheres that absorb nothing: one layer, a stack on `glass`, and a bubble.

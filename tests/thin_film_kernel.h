@@ -2,7 +2,7 @@
 
 // film_optics of kernels/thin_film.h on the test device, for any films.
 
-#include "thin_film_oracle.h"
+#include "selftest/film_oracle.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 // The oracle for thin films against closed forms.
 
-#include "thin_film_oracle.h"
+#include "selftest/film_oracle.h"
 
 #include <cmath>
 #include <complex>
