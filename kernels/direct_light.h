@@ -31,7 +31,7 @@ float3 diffuse_direct_light(const Scene* scene, const global SurfaceMaterial* ma
                             const PathWeight* weight, float u_light, float2 u_point) {
     const int chosen = choose_light(scene, u_light);
     const DirectLight light = sample_direct(scene->lights + chosen, it, n, false, u_point);
-    // Negated, so that a NaN goes on to the film, which counts it.
+    // Not !(> 0): a NaN goes on to the eye pass, which counts it.
     if (light.irradiance <= 0.0f || is_occluded(scene, light.origin, light.direction, light.t_max))
         return 0.0f;
 #if HAS_COATED_DIFFUSE

@@ -2,6 +2,8 @@
 // point. Emission seen on the way and, unless DIRECT_PHOTONS, direct light at the visible point add to the pixel at once.
 #define PATH_SPECTRUM COLOURED_EYE
 #include "direct_light.h"
+#include "finite.h"
+#include "grid.h"
 
 // Dimensions of a pixel's low-discrepancy sequence over the passes.
 #define EYE_FILM s01
@@ -33,14 +35,22 @@ typedef struct EyePath {
     float pdf;        // [1/sr] with which a nearly specular surface chose the direction; 0 after any other, and at the camera
     float3 normal;    // of that surface, with which it looked for light
     bool both_sides;  // whether it did so on both of its sides
+    uint non_finite;  // contributions and visible points that were left out for it
 } EyePath;
+
+void add_radiance(EyePath* path, float3 xyz) {
+    if (is_finite3(xyz))
+        path->radiance += xyz;
+    else
+        ++path->non_finite;
+}
 
 #if HAS_AREA_LIGHT || HAS_INFINITE_LIGHT
 // Adds what a light emits along the path, in which the surface before has had its share already if it sampled the light with
 // light_pdf (see rough_direct_light).
 void add_emission(const Scene* scene, const global SceneLight* light, float light_pdf, EyePath* path) {
     const float share = path->pdf > 0.0f ? path->pdf / (path->pdf + light_pdf) : 1.0f;
-    path->radiance += share * light->scale * weighted_xyz(scene, &path->weight, light->spectrum, -1);
+    add_radiance(path, share * light->scale * weighted_xyz(scene, &path->weight, light->spectrum, -1));
 }
 #endif
 
@@ -75,6 +85,7 @@ void see_emission(const Scene* scene, const Interaction* it, float distance, Eye
 typedef struct EyeEnd {
     VisiblePoint point;
     VisibleSurface surface;
+    float extent;  // of its triangle
 } EyeEnd;
 
 void make_visible_point(const Interaction* it, float3 n, int slot, EyeEnd* end) {
@@ -84,6 +95,16 @@ void make_visible_point(const Interaction* it, float3 n, int slot, EyeEnd* end) 
     end->point.normal = pack_normal(n);
     end->point.slot = slot;
     end->surface.material = -1;
+    end->extent = it->extent;
+}
+
+// Whether what the gather is to multiply and where it is to look are finite.
+bool end_is_finite(const EyePath* path, const EyeEnd* end) {
+    float sum = path->weight.scale;
+#if PATH_SPECTRUM
+    sum += carried_total(&path->weight);
+#endif
+    return is_finite(sum) && is_finite3((float3)(end->point.x, end->point.y, end->point.z));
 }
 
 // At a diffuse surface; returns whether the path goes on, reflected by a film.
@@ -108,7 +129,7 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
     }
 #endif
 #if !DIRECT_PHOTONS
-    path->radiance += diffuse_direct_light(scene, material, it, n, &path->weight, u_light, u_point);
+    add_radiance(path, diffuse_direct_light(scene, material, it, n, &path->weight, u_light, u_point));
 #endif
     make_visible_point(it, n, path->weight.slot, end);
     return false;
@@ -128,7 +149,7 @@ bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, cons
     path->both_sides = material->kind == MATERIAL_DIELECTRIC;
     // With DIRECT_PHOTONS direct light comes with the photons, but only where photons are taken.
     if (!DIRECT_PHOTONS || !material->takes_photons)
-        path->radiance += rough_direct_light(scene, material, it, &frame, wo, facing.outside, &path->weight, u_light, u_point);
+        add_radiance(path, rough_direct_light(scene, material, it, &frame, wo, facing.outside, &path->weight, u_light, u_point));
     if (!material->takes_photons)
         return true;
     make_visible_point(it, facing.normal, path->weight.slot, end);
@@ -141,10 +162,11 @@ bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, cons
 }
 #endif
 
-// One work-item per pixel of the region. radius0[pixel] is the initial radius, times radius_scale that of this pass.
+// One work-item per pixel of the region. radius0[pixel] is the initial radius, times radius_scale that of this pass. What is not
+// finite is left out and counted in non_finite.
 kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float* radius0, float radius_scale,
                      const global FilmPixel* film, global VisiblePoint* visible_points, global VisibleSurface* visible_surfaces,
-                     global float* eye_spectra) {
+                     global float* eye_spectra, global uint* non_finite) {
     SCENE_FROM_PARAMETERS;
     const uint pixel = (uint)get_global_id(0);
     const uint x = (uint)constants->region_x + pixel % (uint)constants->region_width;
@@ -174,12 +196,17 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
     path.pdf = 0.0f;
     path.normal = 0.0f;
     path.both_sides = false;
+    path.non_finite = 0;
     EyeEnd end;
     end.point.slot = SLOT_NONE;
+    end.extent = 0.0f;
     for (int depth = 0; depth < MAX_DEPTH; ++depth) {
         const Hit hit = closest_hit(&scene, path.origin, path.direction);
         if (hit.triangle < 0) {
-            see_nothing(&scene, &path);
+            if (is_finite3(path.direction))
+                see_nothing(&scene, &path);
+            else
+                ++path.non_finite;
             break;
         }
         const Interaction it = make_interaction(&scene, &hit);
@@ -204,18 +231,24 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
         }
         path.origin = leave_surface(&it, path.direction);
     }
+    if (end.point.slot != SLOT_NONE && !end_is_finite(&path, &end)) {
+        end.point.slot = SLOT_NONE;
+        ++path.non_finite;
+    }
     end.point.throughput = path.weight.scale;
     end.point.direct_x = path.radiance.x;
     end.point.direct_y = path.radiance.y;
     end.point.direct_z = path.radiance.z;
 #if RADIUS_STATISTICS
-    end.point.radius = film[pixel].statistics_radius;
+    const float radius = film[pixel].statistics_radius;
 #else
-    end.point.radius = radius0[pixel] * radius_scale;
+    const float radius = radius0[pixel] * radius_scale;
 #endif
+    end.point.radius = search_radius(radius, end.extent);
     end.point.camera_rays = ray_counts.closest;
     end.point.shadow_rays = ray_counts.any;
     visible_points[pixel] = end.point;
+    count_non_finite(non_finite, NON_FINITE_EYE, path.non_finite);
 #if HAS_ROUGH_PHOTONS
     visible_surfaces[pixel] = end.surface;
 #endif

@@ -1,4 +1,5 @@
 // Step 5: at each visible point, the photons within its radius on the same surface: Σ_w c_w T_w f_w Φ_w.
+#include "finite.h"
 #include "grid.h"
 #include "sampling.h"
 #include "spectrum.h"
@@ -10,15 +11,67 @@
 // Photons on surfaces that are turned further away than this do not count: round a corner, or on the back of a sheet.
 #define SMALLEST_NORMAL_COSINE 0.5f
 
+// Photons that are added up at once. A plain sum of n floats that are alike is wrong by some n 1e-8 of itself: by a hundredth for the
+// million photons that a large radius may find. So they are added up in blocks, and these in blocks of as many.
+#define SUM_BLOCK 1024u
+
+typedef struct Flux {
+    float3 xyz;
+    float single;  // at the visible point's slot, of photons that carry every wavelength
+#if COLOURED_EYE
+    Spectrum spectrum;  // of photons that carry every wavelength
+#endif
+} Flux;
+
 // What a visible point has gathered so far.
 typedef struct Gathered {
-    float3 flux;   // XYZ
-    float single;  // flux at the visible point's slot, of photons that carry every wavelength
+    Flux flux;  // of the block that is not full yet
     uint count;
-#if COLOURED_EYE
-    Spectrum spectrum;  // flux of photons that carry every wavelength
-#endif
+    Flux full;  // of full blocks, and of SUM_BLOCK of these each; holds nothing while there is none
+    Flux many;
+    uint full_count;
+    uint non_finite;
 } Gathered;
+
+void clear_flux(Flux* flux) {
+    flux->xyz = 0.0f;
+    flux->single = 0.0f;
+#if COLOURED_EYE
+    for (int b = 0; b < BLOCKS; ++b)
+        flux->spectrum.block[b] = 0.0f;
+#endif
+}
+
+void add_flux(Flux* sum, const Flux* more) {
+    sum->xyz += more->xyz;
+    sum->single += more->single;
+#if COLOURED_EYE
+    for (int b = 0; b < BLOCKS; ++b)
+        sum->spectrum.block[b] += more->spectrum.block[b];
+#endif
+}
+
+void finish_block(Gathered* gathered) {
+    if (gathered->full_count % SUM_BLOCK == 0u)
+        gathered->full = gathered->flux;
+    else
+        add_flux(&gathered->full, &gathered->flux);
+    clear_flux(&gathered->flux);
+    gathered->count = 0;
+    if (++gathered->full_count == SUM_BLOCK)
+        gathered->many = gathered->full;
+    else if (gathered->full_count % SUM_BLOCK == 0u)
+        add_flux(&gathered->many, &gathered->full);
+}
+
+// The photons in all; their flux is put together.
+float finish_sum(Gathered* gathered) {
+    if (gathered->full_count % SUM_BLOCK != 0u)
+        add_flux(&gathered->flux, &gathered->full);
+    if (gathered->full_count >= SUM_BLOCK)
+        add_flux(&gathered->flux, &gathered->many);
+    return (float)(gathered->full_count * SUM_BLOCK + gathered->count);
+}
 
 typedef struct Search {
     const global Photon* photons;
@@ -63,24 +116,28 @@ void add_rough_photon(const Search* search, uint index, Gathered* gathered) {
         evaluate_rough(search->scene, material, search->surface.thickness, outside, search->outgoing, incident, slot);
     if (rough.geometry <= 0.0f)
         return;
-    ++gathered->count;
     const Spectrum* share = reflected ? &rough.optics.reflected : &rough.optics.transmitted;
     float factor = rough.geometry;
     if (!reflected) {
         const float inverse_eta = inverse_relative_eta(search->scene, material, outside, slot);
         factor *= inverse_eta * inverse_eta;  // radiance
     }
+    if (!is_finite(factor * (slot >= 0 ? spectrum_at(share, slot) : spectrum_sum(share)))) {
+        ++gathered->non_finite;
+        return;
+    }
+    ++gathered->count;
     if (photon->slot >= 0) {
         const float throughput = search->slot >= 0 ? 1.0f : search->eye_spectrum[slot];
-        gathered->flux += factor * spectrum_at(share, slot) * throughput * (float3)(photon->flux_x, photon->flux_y, photon->flux_z);
+        gathered->flux.xyz += factor * spectrum_at(share, slot) * throughput * (float3)(photon->flux_x, photon->flux_y, photon->flux_z);
         return;
     }
     const global float* spectrum = search->photon_spectra + (size_t)index * W_PADDED;
     if (slot >= 0) {
-        gathered->single += factor * spectrum_at(share, slot) * spectrum[slot];
+        gathered->flux.single += factor * spectrum_at(share, slot) * spectrum[slot];
     } else {
         for (int b = 0; b < BLOCKS; ++b)
-            gathered->spectrum.block[b] += factor * share->block[b] * vloadv(b, spectrum);
+            gathered->flux.spectrum.block[b] += factor * share->block[b] * vloadv(b, spectrum);
     }
 }
 #endif
@@ -112,9 +169,9 @@ void add_photon(const Search* search, uint index, Gathered* gathered) {
 #if STORE_SPECTRAL_FLUX
     if (search->slot >= 0) {
         if (photon->slot == SLOT_ALL)
-            gathered->single += search->photon_spectra[(size_t)index * W_PADDED + search->slot];
+            gathered->flux.single += search->photon_spectra[(size_t)index * W_PADDED + search->slot];
         else if (photon->slot == search->slot)
-            gathered->flux += flux;
+            gathered->flux.xyz += flux;
         else
             return;
         ++gathered->count;
@@ -124,13 +181,13 @@ void add_photon(const Search* search, uint index, Gathered* gathered) {
     ++gathered->count;
 #if COLOURED_EYE
     if (photon->slot >= 0) {
-        gathered->flux += search->eye_spectrum[photon->slot] * flux;
+        gathered->flux.xyz += search->eye_spectrum[photon->slot] * flux;
     } else {
         for (int b = 0; b < BLOCKS; ++b)
-            gathered->spectrum.block[b] += vloadv(b, search->photon_spectra + (size_t)index * W_PADDED);
+            gathered->flux.spectrum.block[b] += vloadv(b, search->photon_spectra + (size_t)index * W_PADDED);
     }
 #else
-    gathered->flux += flux;
+    gathered->flux.xyz += flux;
 #endif
 }
 
@@ -163,6 +220,8 @@ __attribute__((always_inline)) void add_range(const Search* search, uint begin, 
         else
 #endif
             add_photon(search, index, gathered);
+        if (gathered->count == SUM_BLOCK)
+            finish_block(gathered);
     }
 }
 
@@ -179,13 +238,13 @@ bool share_buckets(const Row* rows, int count, uint span) {
 }
 
 // One work-item per pixel. gathered_flux[pixel] becomes the XYZ of Σ flux / photon paths, throughput included, and the number
-// of photons found; the film divides by the area π r².
+// of photons found; the film divides by the area π r². What is not finite is left out and counted in non_finite.
 kernel void gather(const global SceneConstants* constants, const global float* pass_table,
                    const global VisiblePoint* visible_points, const global float* eye_spectra, const global Photon* photons,
                    const global float* photon_spectra, const global uint2* pairs, const global uint* bucket_begin,
                    const global uint* largest_radius, uint paths_per_pass, const global VisibleSurface* visible_surfaces,
                    const global PhotonSurface* photon_surfaces, const global SurfaceMaterial* materials,
-                   const global SceneFilmLayer* film_layers, global float4* gathered_flux) {
+                   const global SceneFilmLayer* film_layers, global float4* gathered_flux, global uint* non_finite) {
     const uint pixel = (uint)get_global_id(0);
     const VisiblePoint point = visible_points[pixel];
     if (point.slot == SLOT_NONE) {
@@ -221,19 +280,16 @@ kernel void gather(const global SceneConstants* constants, const global float* p
 #endif
 
     Gathered gathered;
-    gathered.flux = 0.0f;
-    gathered.single = 0.0f;
-    gathered.count = 0;
-#if COLOURED_EYE
-    for (int b = 0; b < BLOCKS; ++b)
-        gathered.spectrum.block[b] = 0.0f;
-#endif
+    clear_flux(&gathered.flux);
+    gathered.count = gathered.full_count = gathered.non_finite = 0;
     const int3 low = cell_of(search.point - point.radius, constants, search.scale);
     const int3 high = cell_of(search.point + point.radius, constants, search.scale);
-    Row rows[9];  // two in y and z each; three where a coordinate rounds by more than a cell exceeds the sphere
+    // Two in y and z each; three where a coordinate rounds by more than a cell exceeds the sphere, and never more while radii are
+    // above their least (search_radius).
+    Row rows[9];
     int count = 0;
-    for (int z = low.z; z <= high.z; ++z) {
-        for (int y = low.y; y <= high.y; ++y) {
+    for (int z = low.z; z <= min(high.z, low.z + 2); ++z) {
+        for (int y = low.y; y <= min(high.y, low.y + 2); ++y) {
             const Row row = {y, z, row_bucket(y, z)};
             rows[count++] = row;
         }
@@ -249,16 +305,22 @@ kernel void gather(const global SceneConstants* constants, const global float* p
             add_range(&search, 0, bucket_begin[last + 1], &rows[i], &gathered);
         }
     }
-    float3 flux = gathered.flux;
+    const float found = finish_sum(&gathered);
+    float3 flux = gathered.flux.xyz;
     if (point.slot >= 0)
-        flux += gathered.single * slot_weight(pass_table, point.slot);
+        flux += gathered.flux.single * slot_weight(pass_table, point.slot);
 #if COLOURED_EYE
     if (point.slot == SLOT_ALL) {
         for (int b = 0; b < BLOCKS; ++b)
-            gathered.spectrum.block[b] *= vloadv(b, search.eye_spectrum);
-        flux += spectrum_to_xyz(pass_table, &gathered.spectrum);
+            gathered.flux.spectrum.block[b] *= vloadv(b, search.eye_spectrum);
+        flux += spectrum_to_xyz(pass_table, &gathered.flux.spectrum);
     }
 #endif
     flux *= point.throughput / (float)paths_per_pass;
-    gathered_flux[pixel] = (float4)(flux, (float)gathered.count);
+    if (!is_finite3(flux)) {
+        flux = 0.0f;
+        ++gathered.non_finite;
+    }
+    count_non_finite(non_finite, NON_FINITE_GATHER, gathered.non_finite);
+    gathered_flux[pixel] = (float4)(flux, found);
 }

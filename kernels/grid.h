@@ -11,6 +11,11 @@
 #define BUCKET_COUNT (1u << BUCKET_BITS)
 #define BUCKET_MASK (BUCKET_COUNT - 1u)
 
+// With what radius to search for photons around a point of a triangle of this extent if `wanted` is the schedule's.
+float search_radius(float wanted, float extent) {
+    return max(wanted, max(SMALLEST_RELATIVE_RADIUS * extent, SMALLEST_RADIUS));
+}
+
 // 1 / edge of a cell. largest_radius holds the bits of the largest search radius of the pass's visible points, 0 if it has
 // none (then nothing is looked up, and any scale will do).
 float cell_scale(const global uint* largest_radius) {

@@ -50,13 +50,25 @@ kernel void sort_count(const global uint2* pairs, const global uint* summary, ui
         histogram[d * blocks + block] = counts[d];
 }
 
-// One work-item in all: counts become positions.
-kernel void sort_scan(uint blocks, global uint* histogram) {
+// Counts become positions in two steps of a work-item per digit each. One work-item for all would take DIGITS · blocks steps, and
+// llvmpipe (Mesa 22.3) ends a kernel's loops after 65535 of them without a word.
+kernel void sort_totals(uint blocks, const global uint* histogram, global uint* totals) {
+    const uint digit = (uint)get_global_id(0);
     uint total = 0;
-    for (uint i = 0; i < DIGITS * blocks; ++i) {
-        const uint count = histogram[i];
-        histogram[i] = total;
-        total += count;
+    for (uint block = 0; block < blocks; ++block)
+        total += histogram[digit * blocks + block];
+    totals[digit] = total;
+}
+
+kernel void sort_scan(uint blocks, const global uint* totals, global uint* histogram) {
+    const uint digit = (uint)get_global_id(0);
+    uint position = 0;
+    for (uint d = 0; d < digit; ++d)
+        position += totals[d];
+    for (uint block = 0; block < blocks; ++block) {
+        const uint count = histogram[digit * blocks + block];
+        histogram[digit * blocks + block] = position;
+        position += count;
     }
 }
 
@@ -73,13 +85,14 @@ kernel void sort_scatter(const global uint2* pairs, const global uint* summary, 
 }
 
 // At least one work-item per pair and one more: bucket_begin[b] is where bucket b begins among the sorted pairs, for b from 0 to
-// BUCKET_COUNT.
-kernel void bucket_ranges(const global uint2* pairs, const global uint* summary, global uint* bucket_begin) {
+// BUCKET_COUNT. Of the buckets between two pairs it fills `most`, after the first `skip`.
+kernel void bucket_ranges(const global uint2* pairs, const global uint* summary, uint skip, uint most,
+                          global uint* bucket_begin) {
     const uint i = (uint)get_global_id(0), n = summary[0];
     if (i > n)
         return;
-    const uint first = i == 0 ? 0u : pairs[i - 1].x + 1u;
+    const uint first = skip + (i == 0 ? 0u : pairs[i - 1].x + 1u);
     const uint last = i == n ? BUCKET_COUNT : pairs[i].x;
-    for (uint b = first; b <= last; ++b)
+    for (uint b = first; b <= min(last, first + (most - 1u)); ++b)
         bucket_begin[b] = i;
 }

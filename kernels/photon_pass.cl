@@ -2,6 +2,7 @@
 // from the path's second hit on, since direct light is sampled at the visible points (from the first with DIRECT_PHOTONS).
 #define PATH_SPECTRUM 1
 #include "bsdf.h"
+#include "finite.h"
 #include "lights.h"
 
 // Dimensions of the low-discrepancy sequence over all photons of the render.
@@ -17,15 +18,16 @@ typedef struct PhotonStore {
     global PhotonSurface* surfaces;
     global float* spectra;
     uint next, end;
+    uint non_finite;  // photons and paths that were left out for it
 } PhotonStore;
 
 // Stores a photon that arrived along `direction`; flux times `factor` is what a visible point is to add up, and
-// `side` where it lies: see the structs. Past the end it only counts; the host then makes room and repeats the pass.
+// `side` where it lies: see the structs. Past the end it only counts; the host then makes room and repeats the pass. A photon that
+// is not finite is left out, since it would cost every pixel around it what they gather.
 void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it, float3 n, float3 direction, int side,
                   const PathWeight* flux, float factor) {
-    const uint index = store->next++;
-    if (index >= store->end)
-        return;
+    const uint index = store->next;
+    const bool has_room = index < store->end;
     const float scale = flux->scale * factor;
     float3 xyz;
     if (flux->slot >= 0) {
@@ -35,11 +37,19 @@ void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it,
         for (int b = 0; b < BLOCKS; ++b) {
             scaled.block[b] = scale * flux->spectrum.block[b];
 #if STORE_SPECTRAL_FLUX
-            vstorev(scaled.block[b], b, store->spectra + (size_t)index * W_PADDED);
+            if (has_room)
+                vstorev(scaled.block[b], b, store->spectra + (size_t)index * W_PADDED);
 #endif
         }
         xyz = spectrum_to_xyz(scene->pass_table, &scaled);
     }
+    if (!is_finite3(xyz) || !is_finite3(it->point)) {
+        ++store->non_finite;
+        return;
+    }
+    ++store->next;
+    if (!has_room)
+        return;
     const Photon photon = {it->point.x, it->point.y, it->point.z, pack_normal(n), xyz.x, xyz.y, xyz.z, flux->slot};
     store->photons[index] = photon;
 #if HAS_ROUGH_PHOTONS
@@ -79,6 +89,12 @@ typedef struct PhotonPath {
     bool bounced;         // that one has been drawn
 } PhotonPath;
 
+// Whether what the path carries and where it goes are finite.
+bool path_is_finite(const PhotonPath* path) {
+    return is_finite(path->weight.scale) && is_finite(carried_total(&path->weight)) && is_finite3(path->direction) &&
+           is_finite3(path->origin);
+}
+
 float2 direction_numbers(const PhotonPath* path, uint depth) {
     return path->bounced ? (float2)(random_step(path->key.y, depth), random_step(path->key.z, depth)) : path->first_bounce;
 }
@@ -106,6 +122,11 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
     }
 #endif
     PathWeight reflected = reflected_diffusely(scene, material, thickness, coat, &path->weight);
+    const float remaining = carried_total(&reflected);
+    if (!is_finite(remaining) || !is_finite(reflected.scale) || (before > 0.0f && !is_finite(mirrored))) {
+        ++store->non_finite;
+        return false;
+    }
     if (store_it)
         store_photon(scene, store, it, n, path->direction, -1, &reflected, INV_PI);
 #if HAS_COATED_DIFFUSE
@@ -116,7 +137,7 @@ bool meet_diffuse(const Scene* scene, const global SurfaceMaterial* material, co
     }
 #endif
     // With a film this may exceed what is left beside `mirrored`; the weight then makes up for it.
-    const float after = carried_total(&reflected) / before * (reflected.scale / path->weight.scale);
+    const float after = remaining / before * (reflected.scale / path->weight.scale);
     const float survival = min(after, 1.0f - mirrored);
     if (!(u < mirrored + survival))
         return false;
@@ -158,7 +179,7 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
     for (int depth = 0; depth < MAX_DEPTH; ++depth) {
         const Hit hit = closest_hit(scene, path.origin, path.direction);
         if (hit.triangle < 0)
-            return;
+            break;
         const Interaction it = make_interaction(scene, &hit);
         const global SurfaceMaterial* material = scene->materials + it.material;
         const bool store_it = depth > 0 || DIRECT_PHOTONS;
@@ -181,22 +202,26 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
 #endif
             float pdf;
             if (!scatter(scene, material, &it, &path.direction, v, slot, false, &path.weight, &pdf))
-                return;
+                break;
 #if HAS_ROUGH
             path.bounced |= material->alpha_u > 0.0f;
 #endif
         }
         path.origin = leave_surface(&it, path.direction);
     }
+    if (!path_is_finite(&path))
+        ++store->non_finite;
 }
 
 // One work-item per PATHS_PER_ITEM paths. It fills photons[item·capacity …] and says in item_counts[item] how many it
-// would have stored, which may be more than the capacity, and adds its rays to item_rays[item].
+// would have stored, which may be more than the capacity, and adds its rays to item_rays[item]. What is not finite is left out and
+// counted in non_finite.
 kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_pass, uint capacity, global Photon* photons,
-                        global PhotonSurface* photon_surfaces, global float* photon_spectra, global uint* item_counts, global uint* item_rays) {
+                        global PhotonSurface* photon_surfaces, global float* photon_spectra, global uint* item_counts, global ulong* item_rays,
+                        global uint* non_finite) {
     SCENE_FROM_PARAMETERS;
     const uint item = (uint)get_global_id(0);
-    PhotonStore store = {photons, photon_surfaces, photon_spectra, item * capacity, (item + 1u) * capacity};
+    PhotonStore store = {photons, photon_surfaces, photon_spectra, item * capacity, (item + 1u) * capacity, 0};
     const uint first = item * PATHS_PER_ITEM;
     const uint last = min(first + PATHS_PER_ITEM, paths_per_pass);
     uint8 scramble;
@@ -212,4 +237,5 @@ kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_p
     }
     item_counts[item] = store.next - item * capacity;
     item_rays[item] += ray_counts.closest;
+    count_non_finite(non_finite, NON_FINITE_PHOTON, store.non_finite);
 }

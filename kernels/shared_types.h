@@ -207,16 +207,32 @@ typedef struct PhotonSurface {
     tristim_uint incident;  // octahedral, back along the photon's path
 } PhotonSurface;
 
-// Running sums of one pixel, compensated (high and low part), 72 bytes: survive a million passes in float.
+// The least radius of a search for photons. Points of a triangle are known to a few units in the last place of its largest coordinate,
+// 2^-23 of Triangle::extent. Discs of two such units' radius and less hold up to a quarter too many or too few photons (measured by
+// `tristim selftest`), from four on as many as they should. And below SMALLEST_RADIUS squares are no normal floats.
+#define SMALLEST_RELATIVE_RADIUS 0x1p-20f
+#define SMALLEST_RADIUS 0x1p-60f
+// Beyond this they come near to overflow.
+#define LARGEST_RADIUS 0x1p60f
+
+// Running sums of one pixel, compensated (high and low part), 84 bytes: survive a million passes in float.
 typedef struct FilmPixel {
     float sum_high[3], sum_low[3];
-    float square_high[3], square_low[3];
+    float square_high[3], square_low[3];  // square_high is infinite once a sample was too large to be squared
     tristim_uint samples;
     tristim_uint rejected;  // samples that were not finite
-    float statistics_radius;  // --radius statistics: r, and the photons counted so far
-    float statistics_count;
-    tristim_uint camera_rays, shadow_rays;  // traced so far
+    float statistics_radius, statistics_radius_low;  // --radius statistics: r,
+    float statistics_count, statistics_count_low;    // and the photons counted so far
+    tristim_uint camera_rays, shadow_rays;  // traced so far, modulo 2^32
+    tristim_uint ray_carries;  // how often these ran over: camera rays in the low 16 bits, shadow rays in the high ones
 } FilmPixel;
+
+// Counts of values that were not finite, by the kernel that left them out: two uints each, the low one first. The film counts by
+// pixel.
+#define NON_FINITE_EYE 0
+#define NON_FINITE_PHOTON 1
+#define NON_FINITE_GATHER 2
+#define NON_FINITE_COUNTS 3
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BvhNode) == 256 && sizeof(BvhLeaf) == 320);
@@ -224,7 +240,7 @@ static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
 static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 64);
 static_assert(sizeof(SceneFilmLayer) == 16 && sizeof(SceneTexture) == 96);
 static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
-static_assert(sizeof(FilmPixel) == 72 && sizeof(VisibleSurface) == 20 && sizeof(PhotonSurface) == 8);
+static_assert(sizeof(FilmPixel) == 84 && sizeof(VisibleSurface) == 20 && sizeof(PhotonSurface) == 8);
 } // namespace tristim
 #endif
 

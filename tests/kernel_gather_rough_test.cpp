@@ -262,7 +262,8 @@ void check(const CoatedSurface& surface) {
     run(build_program(device, "gather.cl", gather_macros(), {}), "gather", visible_points, constants, upload(table),
         upload(sheet.points), upload(sheet.eye_spectra), photons, upload(sheet.photon_spectra), sorter.pairs(),
         sorter.bucket_begin(), largest, paths, upload(sheet.surfaces), upload(sheet.photon_surfaces),
-        upload(std::vector{material_of(surface), material_of(surface)}), upload(layers), gathered);
+        upload(std::vector{material_of(surface), material_of(surface)}), upload(layers), gathered,
+        make_buffer<cl_uint>(2 * NON_FINITE_COUNTS));
     const std::vector<cl_float4> results = gathered.read(device);
     std::uint64_t found = 0;
     for (std::size_t pixel = 0; pixel < visible_points; ++pixel) {

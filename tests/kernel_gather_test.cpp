@@ -243,7 +243,8 @@ void check(const Build& build) {
     run(build_program(device, "gather.cl", build.macros(), {}), "gather", visible_points, constants,
         upload(data.pass_table), upload(data.points), upload(data.eye_spectra), photons, upload(data.photon_spectra),
         sorter.pairs(), sorter.bucket_begin(), radius, paths, make_buffer<VisibleSurface>(0),
-        make_buffer<PhotonSurface>(0), make_buffer<SurfaceMaterial>(0), make_buffer<SceneFilmLayer>(0), gathered);
+        make_buffer<PhotonSurface>(0), make_buffer<SurfaceMaterial>(0), make_buffer<SceneFilmLayer>(0), gathered,
+        make_buffer<cl_uint>(2 * NON_FINITE_COUNTS));
     const std::vector<cl_float4> results = gathered.read(device);
 
     std::uint64_t found = 0;

@@ -85,7 +85,9 @@ class Continuation {
             reference_.halves[h].passes = halves[h].passes;
             reference_.halves[h].xyz = halves[h].xyz;
         }
-        const FilmImage image = merge(base_, merge(developed(0), developed(1)));
+        FilmImage image = merge(base_, merge(developed(0), developed(1)));
+        const NonFiniteCounts counts = renderer_.non_finite();
+        image.rejected_samples += counts.total() - counts.film; // the halves have those of the film
         reference_.image = {image.full_width, image.full_height, image.region, image.xyz};
         reference_.variance = image.variance;
         reference_.passes = image.passes;

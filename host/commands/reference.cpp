@@ -65,7 +65,7 @@ void run(const ReferenceCommand& command) {
     else if (!command.quiet)
         fmt::print(stderr, "nothing to do: {} has {:.1f} s of rendering already\n", command.out, reference.seconds);
     if (reference.rejected_samples > 0)
-        fmt::print(stderr, "warning: {} samples were not finite and left out\n", reference.rejected_samples);
+        fmt::print(stderr, "warning: {} values were not finite and left out\n", reference.rejected_samples);
     if (!command.quiet)
         print_summary(command, reference);
 }

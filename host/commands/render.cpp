@@ -117,17 +117,17 @@ void run(RenderCommand& command) {
             write_png(path, image, tone_mapping);
     }
     if (!command.stats.empty()) {
-        const std::string json =
-            stats_json(renderer, command.arguments.scene, load_seconds, film.rejected_samples).dump(2) + "\n";
+        const std::string json = stats_json(renderer, command.arguments.scene, load_seconds).dump(2) + "\n";
         replace_file(command.stats, json);
     }
     if (film.rejected_samples > 0)
-        fmt::print(stderr, "warning: {} samples were not finite and left out\n", film.rejected_samples);
+        fmt::print(stderr, "warning: {} values were not finite and left out: {}\n", film.rejected_samples,
+                   describe(renderer.non_finite()));
     if (!command.quiet) {
         const RenderStatistics& statistics = renderer.statistics();
-        fmt::print(stderr, "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; wrote {}\n",
+        fmt::print(stderr, "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {} non-finite values; wrote {}\n",
                    interrupted() ? "interrupted: " : "", passes, device.info.name, statistics.render_seconds,
-                   statistics.build_kernels_seconds, fmt::join(command.outfiles, ", "));
+                   statistics.build_kernels_seconds, film.rejected_samples, fmt::join(command.outfiles, ", "));
     }
 }
 

@@ -16,20 +16,21 @@ struct FilmImage {
     int full_height = 0;
     Region region;
     std::vector<std::array<float, 3>> xyz;      ///< radiance-like: a white of radiance 1 has Y = 1
-    std::vector<std::array<float, 3>> variance; ///< of xyz, from the spread over the passes; 0 after one pass
-    std::uint64_t rejected_samples = 0;         ///< samples that were not finite
+    std::vector<std::array<float, 3>> variance; ///< of xyz, from the spread over the passes; 0 after one pass, infinite
+                                                ///< where a sample was beyond 1e14
+    std::uint64_t rejected_samples = 0;         ///< values that were not finite, as far as they were counted
     std::uint64_t passes = 0;
 };
 
 /// The image alone.
 XyzImage xyz_image(FilmImage film);
 
-/// Means and variances from the running sums of kernels/film.cl.
+/// Means and variances from the running sums of kernels/film.cl, and the samples that it rejected.
 FilmImage develop_film(const std::vector<FilmPixel>& pixels, int full_width, int full_height, const Region& region);
 
 /// The image after the passes of both, which are other ones and show the same pixels; either may have none. Means and
 /// variances are pooled as Chan, Golub & LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample
-/// Variances", 1979, equations 2.1 do. A sample that was not finite counts as if it were the mean of its image.
+/// Variances", 1979, equations 2.1 do. A sample that was rejected counts as if it were the mean of its image.
 FilmImage merge(const FilmImage& a, const FilmImage& b);
 
 } // namespace tristim

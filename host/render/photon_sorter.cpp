@@ -2,6 +2,9 @@
 
 #include "render/work_groups.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace tristim {
 namespace {
 
@@ -11,16 +14,24 @@ std::uint32_t sort_blocks(const DeviceInfo& info) {
     return groups_per_unit * item_group * info.compute_units;
 }
 
+/// How many steps the loops of a work-item may take in all: llvmpipe (Mesa 22.3) ends them after 65535.
+std::uint32_t loop_steps(const std::string& device) {
+    return device.find("llvmpipe") != std::string::npos ? 1U << 14U : std::numeric_limits<std::uint32_t>::max();
+}
+
 } // namespace
 
 PhotonSorter::PhotonSorter(const Device& device, const Macros& macros, const BuildOptions& options, int radix_bits)
-    : radix_bits_(radix_bits), blocks_(sort_blocks(device.info)), summary_(device, "photon summary", 2),
+    : device_name_(device.info.name), radix_bits_(radix_bits), blocks_(sort_blocks(device.info)),
+      summary_(device, "photon summary", 2),
       histogram_(device, "sort histogram", (std::size_t{1} << radix_bits) * blocks_),
+      totals_(device, "sort totals", std::size_t{1} << radix_bits),
       bucket_begin_(device, "bucket ranges", (std::size_t{1} << (2 * radix_bits)) + 1) {
     const ::cl::Program program = build_program(device, "photon_grid.cl", macros, options);
     offsets_ = ::cl::Kernel(program, "photon_offsets");
     keys_ = ::cl::Kernel(program, "photon_keys");
     count_ = ::cl::Kernel(program, "sort_count");
+    digit_totals_ = ::cl::Kernel(program, "sort_totals");
     scan_ = ::cl::Kernel(program, "sort_scan");
     scatter_ = ::cl::Kernel(program, "sort_scatter");
     ranges_ = ::cl::Kernel(program, "bucket_ranges");
@@ -66,9 +77,14 @@ void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Ph
         count_.setArg(2, static_cast<cl_uint>(shift));
         count_.setArg(3, histogram_.cl());
         enqueue(count_, blocks_, item_group);
+        digit_totals_.setArg(0, blocks_);
+        digit_totals_.setArg(1, histogram_.cl());
+        digit_totals_.setArg(2, totals_.cl());
+        enqueue(digit_totals_, totals_.size(), item_group);
         scan_.setArg(0, blocks_);
-        scan_.setArg(1, histogram_.cl());
-        enqueue(scan_, 1, 1);
+        scan_.setArg(1, totals_.cl());
+        scan_.setArg(2, histogram_.cl());
+        enqueue(scan_, totals_.size(), item_group);
         scatter_.setArg(0, from.cl());
         scatter_.setArg(1, summary_.cl());
         scatter_.setArg(2, static_cast<cl_uint>(shift));
@@ -78,10 +94,16 @@ void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Ph
     }
     ranges_.setArg(0, pairs_.cl());
     ranges_.setArg(1, summary_.cl());
-    ranges_.setArg(2, bucket_begin_.cl());
+    ranges_.setArg(4, bucket_begin_.cl());
     // The room for photons rather than their number, which changes with each pass: PoCL would compile the kernel anew.
     const std::size_t range_items = pairs_.size() + 1;
-    enqueue(ranges_, (range_items + pixel_group - 1) / pixel_group * pixel_group, pixel_group);
+    const auto buckets = static_cast<std::uint32_t>(bucket_begin_.size());
+    const std::uint32_t most = std::min(buckets, loop_steps(device_name_));
+    for (std::uint32_t skip = 0; skip < buckets; skip += most) {
+        ranges_.setArg(2, skip);
+        ranges_.setArg(3, most);
+        enqueue(ranges_, (range_items + pixel_group - 1) / pixel_group * pixel_group, pixel_group);
+    }
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> PhotonSorter::sizes() const {
@@ -89,6 +111,7 @@ std::vector<std::pair<std::string, std::uint64_t>> PhotonSorter::sizes() const {
     const auto add = [&sizes](const auto& buffer) { sizes.emplace_back(buffer.name(), buffer.bytes()); };
     add(item_offsets_);
     add(histogram_);
+    add(totals_);
     add(bucket_begin_);
     add(pairs_);
     add(other_pairs_);

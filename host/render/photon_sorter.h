@@ -46,6 +46,7 @@ class PhotonSorter {
     std::vector<std::pair<std::string, std::uint64_t>> sizes() const;
 
   private:
+    std::string device_name_;
     int radix_bits_ = 0;
     std::uint32_t blocks_ = 0;
     std::uint32_t items_ = 0;
@@ -53,12 +54,14 @@ class PhotonSorter {
     Buffer<std::uint32_t> item_offsets_;
     Buffer<std::uint32_t> summary_;
     Buffer<std::uint32_t> histogram_;
+    Buffer<std::uint32_t> totals_; ///< of its digits
     Buffer<std::uint32_t> bucket_begin_;
     Buffer<cl_uint2> pairs_;
     Buffer<cl_uint2> other_pairs_;
     ::cl::Kernel offsets_;
     ::cl::Kernel keys_;
     ::cl::Kernel count_;
+    ::cl::Kernel digit_totals_;
     ::cl::Kernel scan_;
     ::cl::Kernel scatter_;
     ::cl::Kernel ranges_;

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 namespace tristim {
 namespace {
@@ -40,6 +42,17 @@ Macros common_macros(const RenderOptions& options, const Effects& effects, const
     macros.emplace_back("RADIX_BITS", std::to_string(radix_bits(options.photons_per_pass)));
     macros.emplace_back("RECORD_RAYS", flag(options.record_rays));
     return macros;
+}
+
+/// The largest radius that kernels/grid.h's search_radius may ask for in a scene.
+float largest_radius_floor(const SceneConstants& c) {
+    const float centre = std::max({std::abs(c.centre_x), std::abs(c.centre_y), std::abs(c.centre_z)});
+    return std::max(SMALLEST_RELATIVE_RADIUS * (centre + c.radius), SMALLEST_RADIUS);
+}
+
+/// A count of two uints in a buffer of such.
+std::uint64_t count_at(const std::vector<std::uint32_t>& counts, std::size_t kind) {
+    return std::uint64_t{counts[2 * kind]} | std::uint64_t{counts[2 * kind + 1]} << 32U;
 }
 
 std::size_t rays_to_record(const RenderOptions& options) {
@@ -85,11 +98,13 @@ Renderer::Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions
     largest_radius_ = Buffer<std::uint32_t>(device, "largest radius", 1);
     gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
     film_ = Buffer<FilmPixel>(device, "film", pixels);
+    non_finite_ = Buffer<std::uint32_t>(device, "counts of values that are not finite", 2 * NON_FINITE_COUNTS);
+    largest_floor_ = largest_radius_floor(flat.constants);
 
     const auto paths = static_cast<std::uint32_t>(options.photons_per_pass);
     photon_items_ = (paths + paths_per_item - 1) / paths_per_item;
     item_counts_ = Buffer<std::uint32_t>(device, "photon counts", photon_items_);
-    item_rays_ = Buffer<std::uint32_t>(device, "photon rays", photon_items_);
+    item_rays_ = Buffer<std::uint64_t>(device, "photon rays", photon_items_);
 
     const Stopwatch building;
     build_kernels();
@@ -121,6 +136,9 @@ void Renderer::build_kernels() {
 void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     capacity_per_item_ = std::max(capacity_per_item, 1U);
     const std::size_t photons = std::size_t{photon_items_} * capacity_per_item_;
+    if (photons > std::numeric_limits<std::uint32_t>::max())
+        fail("a pass would store up to {} photons, more than the {} that have numbers: lower the photons per pass",
+             photons, std::numeric_limits<std::uint32_t>::max());
     const bool store_spectra = stores_spectral_flux(effects());
     const std::size_t floats = store_spectra ? photons * static_cast<std::size_t>(layout_.padded()) : 0;
     photons_ = Buffer<Photon>(device_, "photons", photons);
@@ -150,7 +168,11 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
 }
 
 void Renderer::run_pilot() {
-    largest_radius0_ = static_cast<float>(options_.radius.value_or(1.0) * options_.radius_factor);
+    const double initial = options_.radius.value_or(1.0) * options_.radius_factor;
+    if (!(initial >= SMALLEST_RADIUS && initial <= LARGEST_RADIUS))
+        fail("an initial search radius of {:.3g} is not between {:.3g} and {:.3g}, whose squares are floats", initial,
+             SMALLEST_RADIUS, LARGEST_RADIUS);
+    largest_radius0_ = static_cast<float>(initial);
     radius0_.fill(device_, largest_radius0_);
     clear_film();
     const PassSeeds seeds{pilot_pass, options_.seed, 0, options_.seed};
@@ -160,7 +182,7 @@ void Renderer::run_pilot() {
     if (!options_.radius) {
         std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
         for (float& radius : radii)
-            radius *= static_cast<float>(options_.radius_factor);
+            radius = std::clamp(radius * static_cast<float>(options_.radius_factor), SMALLEST_RADIUS, LARGEST_RADIUS);
         radius0_.write(device_, radii);
         largest_radius0_ = *std::max_element(radii.begin(), radii.end());
         trace_eye_paths(seeds, 1.0F); // visible points hold radii
@@ -183,6 +205,7 @@ void Renderer::reset() {
 
 void Renderer::clear_film() {
     item_rays_.fill(device_, 0U);
+    non_finite_.fill(device_, 0U);
     film_clear_.setArg(0, radius0_.cl());
     film_clear_.setArg(1, film_.cl());
     enqueue(Step::Film, film_clear_, film_.size(), pixel_group);
@@ -236,10 +259,12 @@ void Renderer::trace_eye_paths(const PassSeeds& seeds, float scale) {
     eye_pass_.setArg(argument++, visible_points_.cl());
     eye_pass_.setArg(argument++, visible_surfaces_.cl());
     eye_pass_.setArg(argument++, eye_spectra_.cl());
+    eye_pass_.setArg(argument++, non_finite_.cl());
     enqueue(Step::EyePass, eye_pass_, visible_points_.size(), pixel_group);
 
-    if (!options_.statistics_radius) {
-        largest_radius_.fill(device_, std::bit_cast<std::uint32_t>(largest_radius0_ * scale));
+    const float largest = largest_radius0_ * scale;
+    if (!options_.statistics_radius && largest >= largest_floor_) {
+        largest_radius_.fill(device_, std::bit_cast<std::uint32_t>(largest));
         return;
     }
     largest_radius_.fill(device_, 0U);
@@ -249,6 +274,7 @@ void Renderer::trace_eye_paths(const PassSeeds& seeds, float scale) {
 }
 
 void Renderer::trace_photons(const PassSeeds& seeds) {
+    std::vector<std::uint32_t> counted; // by a first attempt, and just so by the second
     for (;;) {
         cl_uint argument = scene_->buffers().bind(photon_pass_, pass_table_, recorder_);
         photon_pass_.setArg(argument++, seeds.seed);
@@ -260,13 +286,17 @@ void Renderer::trace_photons(const PassSeeds& seeds) {
         photon_pass_.setArg(argument++, photon_spectra_.cl());
         photon_pass_.setArg(argument++, item_counts_.cl());
         photon_pass_.setArg(argument++, item_rays_.cl());
+        photon_pass_.setArg(argument++, non_finite_.cl());
         enqueue(Step::PhotonPass, photon_pass_, photon_items_, item_group);
         sorter_.count(item_counts_, enqueue_grid());
         const PhotonSorter::Summary summary = sorter_.summary(device_);
         photon_count_ = summary.photons;
+        if (!counted.empty())
+            non_finite_.write(device_, counted);
         if (summary.most_per_item <= capacity_per_item_)
             return;
         allocate_photons(summary.most_per_item + summary.most_per_item / 4);
+        counted = non_finite_.read(device_);
     }
 }
 
@@ -284,7 +314,7 @@ void Renderer::gather_photons() {
     gather_.setArg(argument++, static_cast<cl_uint>(options_.photons_per_pass));
     for (const ::cl::Buffer* buffer :
          {&visible_surfaces_.cl(), &photon_surfaces_.cl(), &scene_->buffers().materials().cl(),
-          &scene_->buffers().film_layers().cl(), &gathered_flux_.cl()})
+          &scene_->buffers().film_layers().cl(), &gathered_flux_.cl(), &non_finite_.cl()})
         gather_.setArg(argument++, *buffer);
     enqueue(Step::Gather, gather_, visible_points_.size(), pixel_group);
 }
@@ -337,16 +367,28 @@ void Renderer::restore(const std::vector<FilmPixel>& film, std::uint64_t passes,
 RayTotals Renderer::rays() const {
     RayTotals totals;
     for (const FilmPixel& pixel : film_.read(device_)) {
-        totals.camera += pixel.camera_rays;
-        totals.shadow += pixel.shadow_rays;
+        totals.camera += std::uint64_t{pixel.camera_rays} | std::uint64_t{pixel.ray_carries & 0xffffU} << 32U;
+        totals.shadow += std::uint64_t{pixel.shadow_rays} | std::uint64_t{pixel.ray_carries >> 16U} << 32U;
     }
-    for (const std::uint32_t rays : item_rays_.read(device_))
+    for (const std::uint64_t rays : item_rays_.read(device_))
         totals.photon += rays;
     return totals;
 }
 
 FilmImage Renderer::film() const {
-    return develop_film(film_.read(device_), options_.width, options_.height, options_.region);
+    const std::vector<FilmPixel> pixels = film_.read(device_);
+    FilmImage image = develop_film(pixels, options_.width, options_.height, options_.region);
+    image.rejected_samples = non_finite(pixels).total();
+    return image;
+}
+
+NonFiniteCounts Renderer::non_finite(const std::vector<FilmPixel>& film) const {
+    const std::vector<std::uint32_t> counts = non_finite_.read(device_);
+    NonFiniteCounts found{count_at(counts, NON_FINITE_EYE), count_at(counts, NON_FINITE_PHOTON),
+                          count_at(counts, NON_FINITE_GATHER), 0};
+    for (const FilmPixel& pixel : film)
+        found.film += pixel.rejected;
+    return found;
 }
 
 std::vector<Photon> Renderer::photons() const {

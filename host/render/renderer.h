@@ -42,6 +42,7 @@ class Renderer {
     /// Forgets all passes.
     void reset();
 
+    /// Its rejected samples are non_finite().total().
     FilmImage film() const;
 
     /// The running sums, which another renderer of the same scene, options and device goes on from.
@@ -52,6 +53,9 @@ class Renderer {
 
     /// Rays traced so far, those of the pilot left out.
     RayTotals rays() const;
+
+    /// Values that were not finite so far, those of the pilot left out.
+    NonFiniteCounts non_finite() const { return non_finite(film_.read(device_)); }
 
     const RenderStatistics& statistics() const { return statistics_; }
     const RenderOptions& options() const { return options_; }
@@ -84,6 +88,7 @@ class Renderer {
     void enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group);
     PhotonSorter::Enqueue enqueue_grid();
     void collect_times();
+    NonFiniteCounts non_finite(const std::vector<FilmPixel>& film) const;
 
     Device device_;
     RenderOptions options_;
@@ -102,12 +107,14 @@ class Renderer {
 
     Buffer<float> radius0_;
     float largest_radius0_ = 0.0F;
+    float largest_floor_ = 0.0F; ///< no search radius is raised beyond it
     Buffer<VisiblePoint> visible_points_;
     Buffer<VisibleSurface> visible_surfaces_;
     Buffer<float> eye_spectra_;
     Buffer<std::uint32_t> largest_radius_;
     Buffer<cl_float4> gathered_flux_;
     Buffer<FilmPixel> film_;
+    Buffer<std::uint32_t> non_finite_;
 
     std::uint32_t photon_items_ = 0;
     std::uint32_t capacity_per_item_ = 0;
@@ -116,7 +123,7 @@ class Renderer {
     Buffer<PhotonSurface> photon_surfaces_;
     Buffer<float> photon_spectra_;
     Buffer<std::uint32_t> item_counts_;
-    Buffer<std::uint32_t> item_rays_;
+    Buffer<std::uint64_t> item_rays_;
     PhotonSorter sorter_;
 
     ::cl::Kernel wavelengths_;

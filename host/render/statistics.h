@@ -19,6 +19,20 @@ struct RayTotals {
     std::uint64_t photon = 0;
 };
 
+/// Values that were not finite and so were left out, by the kernel that met them: contributions and visible points of
+/// camera paths, photons and their paths, contributions of photons to a visible point, and samples of a pixel.
+struct NonFiniteCounts {
+    std::uint64_t eye = 0;
+    std::uint64_t photon = 0;
+    std::uint64_t gather = 0;
+    std::uint64_t film = 0;
+
+    std::uint64_t total() const { return eye + photon + gather + film; }
+};
+
+/// "eye 1, photon 0, gather 0, film 0".
+std::string describe(const NonFiniteCounts& counts);
+
 /// What a render has cost so far.
 struct RenderStatistics {
     double bvh_seconds = 0.0;

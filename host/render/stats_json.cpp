@@ -2,8 +2,7 @@
 
 namespace tristim {
 
-nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& scene, double load_seconds,
-                                  std::uint64_t rejected_samples) {
+nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& scene, double load_seconds) {
     const RenderOptions& options = renderer.options();
     const RenderStatistics& statistics = renderer.statistics();
     const DeviceInfo& device = renderer.device().info;
@@ -37,7 +36,10 @@ nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& s
     json["bytes_per_photon"] = statistics.bytes_per_photon;
     for (const auto& [name, bytes] : statistics.buffer_bytes)
         json["bytes"][name] = bytes;
-    json["non_finite_samples"] = rejected_samples;
+    const NonFiniteCounts counts = renderer.non_finite();
+    json["non_finite_samples"] = counts.total();
+    json["non_finite"] = {
+        {"eye", counts.eye}, {"photon", counts.photon}, {"gather", counts.gather}, {"film", counts.film}};
     return json;
 }
 
