@@ -20,6 +20,9 @@
 #define BVH_ROUNDING 5.9604645e-8f
 #define BVH_PADDING (16.0f * BVH_ROUNDING)
 
+// By how much of the largest coordinate a ray's origin is moved off the surface that it leaves: see offset_from_triangle.
+#define BVH_LEAVING (32.0f * BVH_ROUNDING)
+
 // Where a ray hit: point = (1-u-v) v0 + u v1 + v v2. triangle = -1 if it hit nothing.
 typedef struct Hit {
     float t; // t_max if it hit nothing
@@ -98,13 +101,17 @@ typedef struct BvhEdges {
     ulong hits;
 } BvhEdges;
 
-// Without contraction, an edge function has the same absolute value and the opposite sign in the triangle on the edge's
-// other side, and its sign is that of the exact value, or zero. With fused multiply-adds neither would hold.
+// a_x b_y - a_y b_x to within two roundings by Kahan's algorithm (Jeannerod, Louvet & Muller 2013, "Further Analysis of
+// Kahan's Algorithm for the Accurate Computation of 2 × 2 Determinants"): its sign is that of the exact value, so that
+// the triangle on the edge's other side gets the opposite one, and the weights of the vertices are right even where the
+// triangle is seen so edge-on, or is so much a needle, that plain products would leave nothing but rounding. Without
+// contraction, so that it is no worse than plain products on a device whose fma() rounds twice.
 float8 bvh_edge_function(float8 a_x, float8 a_y, float8 b_x, float8 b_y) {
 #pragma OPENCL FP_CONTRACT OFF
-    const float8 left = a_x * b_y;
     const float8 right = a_y * b_x;
-    return left - right;
+    const float8 lost = fma(-a_y, b_x, right);
+    const float8 difference = fma(a_x, b_y, -right);
+    return difference + lost;
 }
 
 // Woop, Benthin & Wald 2013, listing in appendix A, without the division and without the double-precision fallback: an
@@ -258,24 +265,13 @@ bool bvh_any_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, floa
     }
 }
 
-// The point p of a surface moved off it, to the side that the geometric normal (unit) points to, so that a ray from
-// there does not meet the surface again: by 256 units in the last place of each coordinate, or, near zero, by a fixed
-// distance (Wächter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection"). p should be interpolated
-// from the triangle's vertices with the hit's u and v, not computed from origin and t. Enough where the triangle is not
-// much larger than its distance from the scene's origin; offset_from_triangle holds for all.
-float3 offset_ray_origin(float3 p, float3 geometric_normal) {
-    const float near_zero = 1.0f / 32.0f;
-    const float fixed_step = 1.0f / 65536.0f;
-    const int3 steps = convert_int3(256.0f * geometric_normal);
-    const int3 outwards = select(steps, -steps, p < 0.0f);
-    const float3 moved = as_float3(as_int3(p) + outwards);
-    return select(moved, p + fixed_step * geometric_normal, fabs(p) < near_zero);
-}
-
-// The same for a triangle whose vertices' largest absolute coordinate is `extent`. The rounding of p and of the next
-// ray's intersection grows with it, wherever on the triangle p lies.
+// The point p of a triangle moved off it, to the side that the geometric normal (unit) points to, so that a ray from
+// there does not meet the triangle again. p should be interpolated from the vertices with the hit's u and v, not computed
+// from origin and t; `extent` is the vertices' largest absolute coordinate, or that of the ray's other end counted from
+// p if that is more. The steps from the vertices to an intersection round by at most 17 BVH_ROUNDING of it (six roundings
+// of vectors up to twice as long, across the ray and in two coordinates), those to p by about 10.
 float3 offset_from_triangle(float3 p, float3 geometric_normal, float extent) {
-    return offset_ray_origin(p + BVH_PADDING * extent * geometric_normal, geometric_normal);
+    return p + BVH_LEAVING * extent * geometric_normal;
 }
 
 #endif

@@ -179,8 +179,9 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
 #if HAS_NEARLY_SPECULAR
         d.pdf = area_light_pdf(light, dot(towards, towards), fabs(cos_light));
 #endif
+        // Seen from far away, the light is no more certain to lie where it is than the distance rounds.
         target = offset_from_triangle(target, cos_light >= 0.0f ? light_direction(light) : -light_direction(light),
-                                      light->extent);
+                                      max(light->extent, 1.0f / inverse_distance));
     }
 #endif
     d.origin = leave_surface(it, towards);

@@ -30,7 +30,7 @@ kernel void evaluate(const global SceneTexture* texture, const global float* tex
 std::vector<float> evaluate(const Texture& texture, const std::vector<Vec3>& points, const std::vector<cl_float2>& uv) {
     static const ::cl::Program program = build_test_program(source);
     std::vector<float> texels{1e9F, 1e9F, 1e9F};
-    const SceneTexture flat = flatten_texture(texture, texels);
+    const SceneTexture flat = flatten_texture(texture, V3d(0.0), texels);
     std::vector<cl_float4> positions;
     for (const Vec3& p : points)
         positions.push_back({{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), 0.0F}});

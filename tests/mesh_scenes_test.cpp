@@ -55,7 +55,7 @@ TEST(MeshScene, DispersionIsAClosedIcosahedronAboveTheFloor) {
     // An icosahedron of circumradius R has the edge R / sin(2π/5) and the volume 5 (3 + √5) / 12 edge³.
     const double edge = 1.1 / std::sin(2.0 * M_PI / 5.0);
     EXPECT_NEAR(volume(mesh), 5.0 * (3.0 + std::sqrt(5.0)) / 12.0 * edge * edge * edge, 1e-5);
-    for (const V3f& position : mesh.positions)
+    for (const V3d& position : mesh.positions)
         EXPECT_GE(position.z, 0.04f - 1e-6f);
     ASSERT_EQ(scene.lights.size(), 1u);
     EXPECT_EQ(scene.lights[0].kind, Light::Kind::Spot);

@@ -17,12 +17,17 @@ using std::numbers::pi;
 using test::SceneFolder;
 using test::with_world;
 
+std::array<float, 3> position_of(const Mesh& mesh, std::uint32_t vertex) {
+    const V3f p(mesh.positions[vertex]);
+    return {p.x, p.y, p.z};
+}
+
 /// The texture coordinates of a shape's corners by their positions.
 std::map<std::array<float, 3>, std::vector<V2f>> coordinates(const Mesh& mesh) {
     std::map<std::array<float, 3>, std::vector<V2f>> result;
     for (const auto& corners : mesh.triangles) {
         for (const std::uint32_t i : corners)
-            result[{mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z}].push_back(mesh.uv.at(i));
+            result[position_of(mesh, i)].push_back(mesh.uv.at(i));
     }
     return result;
 }
@@ -81,7 +86,7 @@ TEST(SceneUv, PatchesThatShareCornersHaveThemApart) {
     EXPECT_EQ(mesh.normals.size(), 8u);
     for (std::size_t i = 0; i < 4; ++i) {
         for (const std::uint32_t corner : mesh.triangles[i]) {
-            const V3f p = mesh.positions[corner];
+            const V3f p(mesh.positions[corner]);
             EXPECT_EQ(mesh.uv[corner], V2f(p.x - (i < 2 ? 0.0F : 1.0F), p.y));
         }
     }

@@ -91,8 +91,7 @@ int add_area_light(Scene& scene, const Spectrum& emission, double radiance) {
 void add_parallelogram(Scene& scene, const V3d& corner, const V3d& edge1, const V3d& edge2, int material,
                        int area_light) {
     Shape shape;
-    shape.mesh.positions = {to_float(corner), to_float(corner + edge1), to_float(corner + edge1 + edge2),
-                            to_float(corner + edge2)};
+    shape.mesh.positions = {corner, corner + edge1, corner + edge1 + edge2, corner + edge2};
     shape.mesh.triangles = {{0U, 1U, 2U}, {0U, 2U, 3U}};
     shape.material = material;
     shape.area_light = area_light;
@@ -117,7 +116,7 @@ void add_sphere(Scene& scene, double radius, int subdivisions, bool vertex_norma
     const Icosphere sphere = make_icosphere(subdivisions);
     Shape shape;
     for (const V3d& position : sphere.positions) {
-        shape.mesh.positions.push_back(to_float(radius * position));
+        shape.mesh.positions.push_back(radius * position);
         if (vertex_normals)
             shape.mesh.normals.push_back(to_float(position));
     }

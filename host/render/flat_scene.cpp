@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "render/flat_texture.h"
+#include "scene/geometry.h"
 #include "scene/textures.h"
 #include "spectra/colour.h"
 
@@ -21,7 +22,7 @@ void store(const V3d& v, float& x, float& y, float& z) {
 }
 
 /// pbrt's perspective camera as the plane of directions that SceneConstants describes.
-void place_camera(const Camera& camera, int width, int height, SceneConstants& c) {
+void place_camera(const Camera& camera, const V3d& coordinates, int width, int height, SceneConstants& c) {
     const double aspect = static_cast<double>(width) / height;
     std::array<double, 4> window =
         aspect > 1.0 ? std::array{-aspect, aspect, -1.0, 1.0} : std::array{-1.0, 1.0, -1.0 / aspect, 1.0 / aspect};
@@ -39,7 +40,7 @@ void place_camera(const Camera& camera, int width, int height, SceneConstants& c
     V3d origin;
     camera.camera_to_world.multVecMatrix(V3d(0.0), origin);
 
-    store(origin, c.camera_x, c.camera_y, c.camera_z);
+    store(origin - coordinates, c.camera_x, c.camera_y, c.camera_z);
     store(corner, c.corner_x, c.corner_y, c.corner_z);
     store(right * ((window[1] - window[0]) * scale / width), c.right_x, c.right_y, c.right_z);
     store(up * ((window[2] - window[3]) * scale / height), c.down_x, c.down_y, c.down_z);
@@ -123,7 +124,7 @@ void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) 
         flat.materials.push_back(m);
     }
     for (const Texture& texture : scene.textures)
-        flat.textures.push_back(flatten_texture(texture, flat.texels));
+        flat.textures.push_back(flatten_texture(texture, flat.origin, flat.texels));
 }
 
 /// Where a mesh has no u and v, pbrt's.
@@ -161,35 +162,20 @@ float largest_coordinate(const std::array<V3f, 3>& vertices) {
 /// Adds a shape's triangles; `area_light` and its spectrum's row apply if the shape emits.
 void add_triangles(const Shape& shape, const Effects& effects, const Light* area_light, int spectrum, FlatScene& flat) {
     for (const auto& corners : shape.mesh.triangles) {
-        const V3f v0 = shape.mesh.positions[corners[0]];
-        const V3f v1 = shape.mesh.positions[corners[1]];
-        const V3f v2 = shape.mesh.positions[corners[2]];
-        const V3d edge1 = V3d(v1) - V3d(v0);
-        const V3d edge2 = V3d(v2) - V3d(v0);
-        const V3d cross = edge1.cross(edge2);
-        const V3d normal = cross.normalized();
-
-        Triangle t{};
-        store(V3d(v0), t.v0_x, t.v0_y, t.v0_z);
-        store(edge1, t.edge1_x, t.edge1_y, t.edge1_z);
-        store(edge2, t.edge2_x, t.edge2_y, t.edge2_z);
-        store(normal, t.normal_x, t.normal_y, t.normal_z);
-        t.extent = largest_coordinate({v0, v1, v2});
+        const V3f v0(shape.mesh.positions[corners[0]] - flat.origin);
+        const V3f v1(shape.mesh.positions[corners[1]] - flat.origin);
+        const V3f v2(shape.mesh.positions[corners[2]] - flat.origin);
+        if (is_degenerate(V3d(v0), V3d(v1), V3d(v2)))
+            continue; // too thin for single precision
+        Triangle t = flat_triangle(v0, v1, v2);
         t.material = shape.material;
-        t.light = -1;
-        t.attributes = add_attributes(shape.mesh, corners, normal, effects, flat.attributes);
+        t.attributes =
+            add_attributes(shape.mesh, corners, V3d(t.normal_x, t.normal_y, t.normal_z), effects, flat.attributes);
         if (area_light != nullptr) {
-            SceneLight light{};
-            light.kind = LIGHT_AREA;
+            SceneLight light = flat_area_light(v0, v1, v2);
             light.spectrum = spectrum;
             light.scale = static_cast<float>(area_light->scale);
             light.two_sided = area_light->two_sided ? 1 : 0;
-            light.area = static_cast<float>(0.5 * cross.length());
-            light.extent = t.extent;
-            store(V3d(v0), light.position_x, light.position_y, light.position_z);
-            store(normal, light.direction_x, light.direction_y, light.direction_z);
-            store(edge1, light.edge1_x, light.edge1_y, light.edge1_z);
-            store(edge2, light.edge2_x, light.edge2_y, light.edge2_z);
             t.light = static_cast<int>(flat.lights.size());
             flat.lights.push_back(light);
         }
@@ -220,11 +206,11 @@ void bound(FlatScene& flat) {
     c.radius = static_cast<float>(0.5 * (high - low).length() * 1.0001);
 }
 
-SceneLight flatten_light(const Light& light, int spectrum) {
+SceneLight flatten_light(const Light& light, const V3d& origin, int spectrum) {
     SceneLight l{};
     l.spectrum = spectrum;
     l.scale = static_cast<float>(light.scale);
-    store(light.position, l.position_x, l.position_y, l.position_z);
+    store(light.position - origin, l.position_x, l.position_y, l.position_z);
     store(light.direction, l.direction_x, l.direction_y, l.direction_z);
     l.cos_total_width = static_cast<float>(light.cos_total_width);
     l.cos_falloff_start = static_cast<float>(light.cos_falloff_start);
@@ -300,8 +286,39 @@ void weigh_lights(const Scene& scene, const std::vector<int>& rows, FlatScene& f
 
 } // namespace
 
+Triangle flat_triangle(const V3f& v0, const V3f& v1, const V3f& v2) {
+    const V3d edge1 = V3d(v1) - V3d(v0);
+    const V3d edge2 = V3d(v2) - V3d(v0);
+    Triangle t{};
+    store(V3d(v0), t.v0_x, t.v0_y, t.v0_z);
+    store(edge1, t.edge1_x, t.edge1_y, t.edge1_z);
+    store(edge2, t.edge2_x, t.edge2_y, t.edge2_z);
+    store(edge1.cross(edge2).normalized(), t.normal_x, t.normal_y, t.normal_z);
+    t.extent = largest_coordinate({v0, v1, v2});
+    t.light = -1;
+    t.attributes = -1;
+    return t;
+}
+
+SceneLight flat_area_light(const V3f& v0, const V3f& v1, const V3f& v2) {
+    const V3d edge1 = V3d(v1) - V3d(v0);
+    const V3d edge2 = V3d(v2) - V3d(v0);
+    SceneLight light{};
+    light.kind = LIGHT_AREA;
+    light.scale = 1.0F;
+    light.probability = 1.0F;
+    light.area = static_cast<float>(0.5 * edge1.cross(edge2).length());
+    light.extent = largest_coordinate({v0, v1, v2});
+    store(V3d(v0), light.position_x, light.position_y, light.position_z);
+    store(edge1.cross(edge2).normalized(), light.direction_x, light.direction_y, light.direction_z);
+    store(edge1, light.edge1_x, light.edge1_y, light.edge1_z);
+    store(edge2, light.edge2_x, light.edge2_y, light.edge2_z);
+    return light;
+}
+
 FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, int height, const Region& region) {
     FlatScene flat;
+    flat.origin = coordinate_origin(scene.shapes);
     add_materials(scene, effects, flat);
 
     std::vector<int> rows;
@@ -319,7 +336,7 @@ FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, i
                 fail("{}: more than one infinite light; add their radiances to one", scene.path);
             c.infinite_light = static_cast<int>(flat.lights.size());
         }
-        flat.lights.push_back(flatten_light(scene.lights[i], rows[i]));
+        flat.lights.push_back(flatten_light(scene.lights[i], flat.origin, rows[i]));
     }
     for (const Shape& shape : scene.shapes) {
         const bool emits = shape.area_light >= 0;
@@ -328,7 +345,7 @@ FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, i
     }
     bound(flat);
     weigh_lights(scene, rows, flat);
-    place_camera(scene.camera, width, height, c);
+    place_camera(scene.camera, flat.origin, width, height, c);
     c.light_count = static_cast<int>(flat.lights.size());
     c.region_x = region.x;
     c.region_y = region.y;

@@ -13,6 +13,7 @@ namespace tristim {
 
 /// A scene in the arrays that the kernels read.
 struct FlatScene {
+    V3d origin{0.0}; ///< where all coordinates here count from, in the world: see coordinate_origin
     SceneConstants constants{};
     TriangleSoup soup;               ///< for build_bvh
     std::vector<Triangle> triangles; ///< same order
@@ -31,5 +32,11 @@ struct FlatScene {
 /// Flattens a scene for an image of the given size, of which `region` is rendered. Throws Error if the scene emits no
 /// light within the visible range.
 FlatScene flatten_scene(const Scene& scene, const Effects& effects, int width, int height, const Region& region);
+
+/// A triangle's geometry as the kernels read it, of no light and without attributes.
+Triangle flat_triangle(const V3f& v0, const V3f& v1, const V3f& v2);
+
+/// The geometry of an area light that is a triangle; of radiance 1 and chosen with certainty.
+SceneLight flat_area_light(const V3f& v0, const V3f& v1, const V3f& v2);
 
 } // namespace tristim

@@ -7,7 +7,7 @@
 
 namespace tristim {
 
-SceneTexture flatten_texture(const Texture& texture, std::vector<float>& texels) {
+SceneTexture flatten_texture(const Texture& texture, const V3d& origin, std::vector<float>& texels) {
     SceneTexture flat{};
     flat.kind = texture.kind == Texture::Kind::Image ? TEXTURE_IMAGE : TEXTURE_BILINEAR;
     switch (texture.mapping) {
@@ -46,10 +46,11 @@ SceneTexture flatten_texture(const Texture& texture, std::vector<float>& texels)
         flat.to_texture[3] = static_cast<float>(texture.uv_scale[2]);
         flat.to_texture[7] = static_cast<float>(texture.uv_scale[3]);
     } else {
+        const M44d to_texture = M44d().setTranslation(origin) * texture.world_to_texture;
         // Imath multiplies row vectors, the kernels column vectors.
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 4; ++column)
-                flat.to_texture[4 * row + column] = static_cast<float>(texture.world_to_texture[column][row]);
+                flat.to_texture[4 * row + column] = static_cast<float>(to_texture[column][row]);
         }
     }
     if (texels.size() + texture.texels.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))

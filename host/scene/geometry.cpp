@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "scene/transforms.h"
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,18 +12,16 @@ namespace tristim {
 
 namespace {
 
-template <typename Vector>
-V3d area_normal(const std::vector<Vector>& positions, const std::array<std::uint32_t, 3>& triangle) {
-    const V3d v0(positions[triangle[0]]), v1(positions[triangle[1]]), v2(positions[triangle[2]]);
+V3d area_normal(const std::vector<V3d>& positions, const std::array<std::uint32_t, 3>& triangle) {
+    const V3d &v0 = positions[triangle[0]], &v1 = positions[triangle[1]], &v2 = positions[triangle[2]];
     return (v1 - v0).cross(v2 - v0);
 }
 
-bool is_degenerate(const std::vector<V3f>& positions, const std::array<std::uint32_t, 3>& triangle) {
-    const V3d v0(positions[triangle[0]]), v1(positions[triangle[1]]), v2(positions[triangle[2]]);
-    const double longest2 = std::max({(v1 - v0).length2(), (v2 - v0).length2(), (v2 - v1).length2()});
-    // The cross product of float positions in double is exact to some 1e-16 of the longest edge squared, so that
-    // anything below 1e-14 is a line or a point.
-    return area_normal(positions, triangle).length() <= 1e-14 * longest2;
+Imath::Box3d bounds(const std::vector<V3d>& positions) {
+    Imath::Box3d box;
+    for (const V3d& position : positions)
+        box.extendBy(position);
+    return box;
 }
 
 std::vector<V3f> unit_normals(const Geometry& geometry) {
@@ -45,6 +45,13 @@ std::vector<V3f> unit_normals(const Geometry& geometry) {
 }
 
 } // namespace
+
+bool is_degenerate(const V3d& v0, const V3d& v1, const V3d& v2) {
+    const double longest2 = std::max({(v1 - v0).length2(), (v2 - v0).length2(), (v2 - v1).length2()});
+    // The cross product is exact to some 1e-16 of the longest edge squared, so that anything below 1e-14 is a line or a
+    // point.
+    return (v1 - v0).cross(v2 - v0).length() <= 1e-14 * longest2;
+}
 
 Geometry transformed(const Geometry& geometry, const M44d& matrix, bool reverse_orientation) {
     Geometry result = geometry;
@@ -74,16 +81,16 @@ BakedMesh bake(const Geometry& geometry) {
     BakedMesh result;
     result.mesh.positions.reserve(geometry.positions.size());
     for (const V3d& position : geometry.positions) {
-        const V3f single(position);
-        if (!std::isfinite(single.x) || !std::isfinite(single.y) || !std::isfinite(single.z))
+        if (!is_finite_float(position))
             fail("the position ({}, {}, {}) is too large", position.x, position.y, position.z);
-        result.mesh.positions.push_back(single);
+        result.mesh.positions.push_back(position);
     }
     if (!geometry.normals.empty())
         result.mesh.normals = unit_normals(geometry);
     result.mesh.uv = geometry.uv;
     for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
-        if (is_degenerate(result.mesh.positions, geometry.triangles[i])) {
+        const auto& [a, b, c] = geometry.triangles[i];
+        if (is_degenerate(geometry.positions[a], geometry.positions[b], geometry.positions[c])) {
             ++result.degenerate;
         } else {
             result.mesh.triangles.push_back(geometry.triangles[i]);
@@ -91,6 +98,28 @@ BakedMesh bake(const Geometry& geometry) {
         }
     }
     return result;
+}
+
+V3d coordinate_origin(const std::vector<Shape>& shapes) {
+    Imath::Box3d box;
+    for (const Shape& shape : shapes)
+        box.extendBy(bounds(shape.mesh.positions));
+    if (box.isEmpty() || box.center().length() <= box.size().length())
+        return V3d(0.0);
+    return box.center();
+}
+
+double relative_spacing(const std::vector<V3d>& positions, const V3d& origin) {
+    const Imath::Box3d box = bounds(positions);
+    const auto largest = [](const V3d& a, const V3d& b) {
+        double coordinate = 0.0;
+        for (int axis = 0; axis < 3; ++axis)
+            coordinate = std::max({coordinate, std::abs(a[axis]), std::abs(b[axis])});
+        return coordinate;
+    };
+    const double spacing =
+        std::max(0x1p-23 * largest(box.min - origin, box.max - origin), 0x1p-52 * largest(box.min, box.max));
+    return spacing / box.size().length();
 }
 
 double area(const Mesh& mesh) {

@@ -61,11 +61,12 @@ struct Texture {
     double outside = 0.0; ///< Image with Wrap::Black: the value beyond the border
 };
 
-/// Triangles in world space. `normals` is empty or holds one unit shading normal per vertex. The geometric normal of a
+/// Triangles in world space, in double precision until single-precision coordinates can count from the scene's middle
+/// (FlatScene::origin). `normals` is empty or holds one unit shading normal per vertex. The geometric normal of a
 /// triangle is (v1−v0)×(v2−v0), already turned for ReverseOrientation and mirroring transforms; area lights emit and
 /// "inside" lies on the side away from it.
 struct Mesh {
-    std::vector<V3f> positions;
+    std::vector<V3d> positions;
     std::vector<V3f> normals;
     std::vector<V2f> uv; ///< empty (then pbrt's (0,0), (1,0), (1,1) for each triangle) or one per vertex
     std::vector<std::array<std::uint32_t, 3>> triangles;

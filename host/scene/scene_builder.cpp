@@ -9,8 +9,10 @@
 
 namespace tristim {
 
-SceneBuilder::SceneBuilder(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling)
-    : folder_(std::filesystem::path(path).parent_path().string()), rgb_upsampling_(rgb_upsampling) {
+SceneBuilder::SceneBuilder(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling,
+                           std::size_t most_triangles)
+    : folder_(std::filesystem::path(path).parent_path().string()), rgb_upsampling_(rgb_upsampling),
+      most_triangles_(most_triangles) {
     scene_.path = path;
 }
 
@@ -108,6 +110,7 @@ void SceneBuilder::object_instance(const std::string& name, const SourceLocation
     if (it == objects_.end())
         fail_at(where, "no object \"{}\" is defined", name);
     for (const ObjectPart& part : it->second) {
+        count_triangles(part.geometry.triangles.size(), where);
         const Geometry world = with_location(where, [&] { return transformed(part.geometry, state_.ctm, false); });
         add_shape(world, part.material, nullptr, where);
     }
@@ -196,6 +199,7 @@ void SceneBuilder::shape(const std::string& kind, ParameterList parameters) {
         note(parameters.where(), remark);
     Geometry world =
         with_location(parameters.where(), [&] { return transformed(object, state_.ctm, state_.reverse_orientation); });
+    count_triangles(world.triangles.size(), parameters.where());
     if (open_object_.empty())
         add_shape(world, state_.material, state_.area_light.get(), parameters.where());
     else
@@ -229,6 +233,13 @@ std::vector<Mesh> split_patches(const BakedMesh& baked) {
 
 } // namespace
 
+void SceneBuilder::count_triangles(std::size_t count, const SourceLocation& where) {
+    triangles_ += count;
+    if (triangles_ > most_triangles_)
+        fail_at(where, "the scene has more than {} triangles here, which is the most that is supported",
+                most_triangles_);
+}
+
 void SceneBuilder::add_shape(const Geometry& world, int material, const AreaLight* area_light,
                              const SourceLocation& where) {
     BakedMesh baked = with_location(where, [&] { return bake(world); });
@@ -248,6 +259,7 @@ void SceneBuilder::add_shape(const Geometry& world, int material, const AreaLigh
         int light = -1;
         if (area_light) {
             scene_.lights.push_back(light_of_area(*area_light, area(mesh)));
+            check_light(scene_.lights.back(), where);
             light = static_cast<int>(scene_.lights.size()) - 1;
         }
         scene_.shapes.push_back({std::move(mesh), material < 0 ? default_material() : material, light});
@@ -307,6 +319,25 @@ void SceneBuilder::collect_textures() {
     }
 }
 
+void SceneBuilder::note_coarse_shapes() {
+    const V3d origin = coordinate_origin(scene_.shapes);
+    std::size_t worst = 0;
+    double coarsest = 0.0;
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
+        const double spacing = relative_spacing(scene_.shapes[i].mesh.positions, origin);
+        if (spacing > coarsest) {
+            coarsest = spacing;
+            worst = i;
+        }
+    }
+    if (coarsest > coarse_spacing)
+        note(shape_where_[worst],
+             fmt::format(
+                 "this shape lies so far from the middle of the scene, or the scene so far from the origin, that "
+                 "its coordinates are precise to {:.2g} of its size only: expect flaws, as from {:.2g} on",
+                 coarsest, coarse_spacing));
+}
+
 Scene SceneBuilder::finish() {
     if (!saved_.empty())
         fail_at(saved_.back().where, "the block that begins here is never closed");
@@ -326,6 +357,7 @@ Scene SceneBuilder::finish() {
         fail("{}: the scene has no geometry", scene_.path);
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i)
         check_thickness(scene_.shapes[i], shape_where_[i]);
+    note_coarse_shapes();
     remove_unused_materials();
     collect_textures();
     return std::move(scene_);

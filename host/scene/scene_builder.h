@@ -15,12 +15,17 @@
 
 namespace tristim {
 
+/// The most triangles that a scene may have, instances counted one by one: they take some ten gigabytes.
+inline constexpr std::size_t max_triangles = std::size_t{1} << 26;
+
 /// Keeps pbrt's graphics state and collects the scene that the directives describe. One method per directive; each
 /// throws Error "file:line: …".
 class SceneBuilder {
   public:
     /// `path` is the main scene file: other files are sought beside it. `rgb_upsampling` overrides the scene's option.
-    explicit SceneBuilder(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling = std::nullopt);
+    /// A scene of more than `most_triangles` triangles is refused.
+    explicit SceneBuilder(const std::string& path, std::optional<RgbUpsampling> rgb_upsampling = std::nullopt,
+                          std::size_t most_triangles = max_triangles);
 
     /// How the "rgb" parameters of what comes next become spectra.
     RgbUpsampling rgb_upsampling() const { return rgb_upsampling_.value_or(scene_rgb_upsampling_); }
@@ -93,11 +98,13 @@ class SceneBuilder {
     void require_options(const std::string& directive, const SourceLocation& where) const;
     void note(const SourceLocation& where, const std::string& text);
     NamedMaterial& find_named_material(const std::string& name, const SourceLocation& where);
+    void count_triangles(std::size_t count, const SourceLocation& where);
     void add_shape(const Geometry& world, int material, const AreaLight* area_light, const SourceLocation& where);
     int default_material();
     void remove_unused_materials();
     void check_thickness(const Shape& shape, const SourceLocation& where) const;
     void collect_textures();
+    void note_coarse_shapes();
 
     Scene scene_;
     std::string folder_;
@@ -112,6 +119,8 @@ class SceneBuilder {
     std::vector<SourceLocation> shape_where_; ///< of scene_.shapes
     std::string open_object_;                 ///< the name between ObjectBegin and ObjectEnd
     int default_material_ = -1;               ///< index into scene_.materials once a shape needs it
+    std::size_t most_triangles_;
+    std::size_t triangles_ = 0; ///< of all shapes and instances so far
     bool in_world_ = false;
     bool has_camera_ = false;
 };

@@ -28,11 +28,8 @@ void check_indices(const std::vector<int>& indices, std::size_t vertices, const 
 
 void read_uv(Geometry& geometry, ParameterList& parameters) {
     const char* const name = parameters.has("uv") ? "uv" : "st";
-    for (const V2d& uv : parameters.points2(name)) {
+    for (const V2d& uv : parameters.points2(name))
         geometry.uv.emplace_back(uv);
-        if (!std::isfinite(geometry.uv.back().x) || !std::isfinite(geometry.uv.back().y))
-            fail_at(parameters.where(name), "\"{}\" holds ({}, {}), which is too large", name, uv.x, uv.y);
-    }
     if (!geometry.uv.empty() && geometry.uv.size() != geometry.positions.size())
         fail_at(parameters.where(name), "\"{}\" has {} pairs for {} vertices", name, geometry.uv.size(),
                 geometry.positions.size());
@@ -156,7 +153,7 @@ Geometry sphere(ParameterList& parameters) {
         fail_at(parameters.where(), "{}: only full spheres are supported, without \"zmin\", \"zmax\" and \"phimax\"",
                 parameters.owner());
     Geometry geometry;
-    const UvSphere unit = make_uv_sphere(sphere_subdivisions);
+    static const UvSphere unit = make_uv_sphere(sphere_subdivisions);
     geometry.normals = unit.positions;
     for (const V3d& position : unit.positions)
         geometry.positions.push_back(position * radius);
@@ -179,6 +176,11 @@ Geometry mesh_file(const std::string& kind, ParameterList& parameters, const Pat
                                       file.degenerate_faces == 1 ? "" : "s", name));
     Geometry geometry;
     geometry.positions.assign(file.positions.begin(), file.positions.end());
+    if (const double spacing = relative_spacing(geometry.positions, V3d(0.0)); spacing > coarse_spacing)
+        remarks.push_back(fmt::format("the mesh in \"{}\" lies so far from its own origin that its coordinates, which "
+                                      "are read in single precision, are precise to {:.2g} of its size only: expect "
+                                      "flaws, as from {:.2g} on",
+                                      name, spacing, coarse_spacing));
     geometry.normals.assign(file.normals.begin(), file.normals.end());
     geometry.uv = file.uv;
     geometry.triangles = file.triangles;
