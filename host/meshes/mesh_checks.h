@@ -14,19 +14,20 @@ using Faces = std::vector<std::vector<int>>;
 /// Vertices are numbered from `first_index` in the message.
 void check_manifold(const std::string& path, const Faces& faces, std::size_t vertices, int first_index);
 
-/// What a look at the text of an OBJ file says before OpenMesh, which skips lines that it cannot read, gets it.
-struct ObjCounts {
+/// What a look at the text of an OBJ file says, and the file as OpenMesh's reader can safely take it: that reader skips
+/// lines that it cannot read, follows "mtllib" to any file, takes more characters for blanks than stand in OBJ files,
+/// and mixes up the third numbers of "vt" lines where only some have one.
+struct CheckedObj {
     std::size_t vertices = 0;
     std::size_t faces = 0;
-    bool has_w = false; ///< a "vt" line has a third number
+    std::string text; ///< the "v", "vt", "vn" and "f" lines, with the numbers that count
 };
 
 /// Throws Error "path:line: …" for numbers that are malformed or not finite and for indices that are malformed or out
 /// of range in "v", "vt" (u and v), "vn" and "f" lines.
-ObjCounts check_obj(const std::string& path, std::string_view text);
+CheckedObj check_obj(const std::string& path, std::string_view text);
 
-/// The text of an OBJ file with blanks for all but the first two numbers of "vt" lines: where only some have a third,
-/// OpenMesh mixes them up.
-std::string without_w(std::string text);
+/// The most corners that a face may have: cutting it into triangles takes a time that grows with their square.
+inline constexpr std::size_t max_face_corners = 10000;
 
 } // namespace tristim

@@ -52,15 +52,15 @@ void import_ply(const std::string& path, const std::string& bytes, MeshImporter&
 }
 
 std::size_t import_obj(const std::string& path, const std::string& bytes, MeshImporter& importer) {
-    const ObjCounts counts = check_obj(path, bytes);
-    std::istringstream stream(counts.has_w ? without_w(bytes) : bytes);
+    CheckedObj checked = check_obj(path, bytes);
+    std::istringstream stream(std::move(checked.text));
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
     options += OpenMesh::IO::Options::VertexTexCoord;
     if (!OpenMesh::IO::IOManager().read(stream, "obj", importer, options) ||
-        importer.positions.size() != counts.vertices)
+        importer.positions.size() != checked.vertices)
         fail("{}: the OBJ file is malformed", path);
     // OpenMesh leaves out faces with fewer than three different vertices.
-    return counts.faces - importer.faces.size();
+    return checked.faces - importer.faces.size();
 }
 
 void check_vertices(const std::string& path, const MeshImporter& importer, int first_index) {
@@ -71,6 +71,9 @@ void check_vertices(const std::string& path, const MeshImporter& importer, int f
                  p.y, p.z);
     }
     for (std::size_t f = 0; f < importer.faces.size(); ++f) {
+        if (importer.faces[f].size() > max_face_corners)
+            fail("{}: face {} has {} corners, and more than {} are not supported", path, f, importer.faces[f].size(),
+                 max_face_corners);
         for (const auto& corner : importer.faces[f]) {
             if (corner.vertex < 0 || static_cast<std::size_t>(corner.vertex) >= importer.positions.size())
                 fail("{}: the vertex index {} of face {} is out of range: the mesh has {} vertices", path,
@@ -131,13 +134,17 @@ class VertexTable {
     std::vector<std::vector<std::uint32_t>> copies_; ///< per vertex of the file
 };
 
-/// Corners without a normal in a mesh that has some get their face's, so that they stay flat.
+/// Corners without a normal in a mesh that has some get their face's, so that they stay flat. In double precision, as
+/// products of large coordinates leave the range of float.
 void complete_normals(const MeshImporter& importer, std::vector<MeshImporter::Corner>& face) {
-    Imath::V3f normal(0.0f);
-    const Imath::V3f& origin = importer.positions[static_cast<std::size_t>(face[0].vertex)];
+    const auto position = [&](const MeshImporter::Corner& corner) {
+        return Imath::V3d(importer.positions[static_cast<std::size_t>(corner.vertex)]);
+    };
+    const Imath::V3d origin = position(face[0]);
+    Imath::V3d sum(0.0);
     for (std::size_t i = 1; i + 1 < face.size(); ++i)
-        normal += (importer.positions[static_cast<std::size_t>(face[i].vertex)] - origin)
-                      .cross(importer.positions[static_cast<std::size_t>(face[i + 1].vertex)] - origin);
+        sum += (position(face[i]) - origin).cross(position(face[i + 1]) - origin);
+    const Imath::V3f normal(sum.normalized());
     for (auto& corner : face) {
         if (!corner.normal)
             corner.normal = normal;

@@ -25,8 +25,8 @@ struct MeshFile {
 /// different normals or texture coordinates in different faces (OBJ) becomes several. Corners without texture
 /// coordinates in a file that has some get (0, 0).
 /// Throws Error naming the file if it is missing, unreadable, malformed or cut short, has no triangles, non-finite
-/// vertices or indices out of range, or is not a manifold: an edge with more than two faces, two neighbours of opposite
-/// orientation, or a vertex whose faces form several fans.
+/// vertices, indices out of range or a face of more than 10,000 corners, or is not a manifold: an edge with more than
+/// two faces, two neighbours of opposite orientation, or a vertex whose faces form several fans.
 MeshFile read_mesh(const std::string& path, MeshFormat format);
 
 } // namespace tristim

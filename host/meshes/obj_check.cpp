@@ -38,14 +38,16 @@ struct Position {
     std::size_t line;
 };
 
-/// Leaves what follows the numbers in `line`.
-void check_numbers(const Position& at, std::string_view keyword, std::string_view& line) {
+/// Adds the numbers of a line that count to `text`.
+void check_numbers(const Position& at, std::string_view keyword, std::string_view line, std::string& text) {
     const int count = keyword == "vt" ? 2 : 3;
     for (int i = 0; i < count; ++i) {
         const std::string_view word = take_word(line);
-        const auto value = parse<float>(word);
-        if (!value || !std::isfinite(*value))
+        // Read in double precision, numbers that are 0 in float are no error.
+        const auto value = parse<double>(word);
+        if (!value || !std::isfinite(static_cast<float>(*value)))
             fail("{}:{}: \"{}\" in \"{}\" is not a finite number", at.path, at.line, word, keyword);
+        text.append(" ").append(word);
     }
 }
 
@@ -64,9 +66,12 @@ struct Totals {
     std::size_t v = 0, vt = 0, vn = 0;
 };
 
-void check_face(const Position& at, std::string_view line, const Totals& current, const Totals& totals) {
+/// Adds the corners of a face to `text`.
+void check_face(const Position& at, std::string_view line, const Totals& current, const Totals& totals,
+                std::string& text) {
     int corners = 0;
     for (std::string_view word = take_word(line); !word.empty(); word = take_word(line), ++corners) {
+        text.append(" ").append(word);
         const std::size_t slash = std::min(word.find('/'), word.size());
         check_index(at, word.substr(0, slash), current.v, totals.v, "vertex");
         if (slash == word.size())
@@ -78,6 +83,9 @@ void check_face(const Position& at, std::string_view line, const Totals& current
         if (second < rest.size())
             check_index(at, rest.substr(second + 1), current.vn, totals.vn, "normal");
     }
+    if (static_cast<std::size_t>(corners) > max_face_corners)
+        fail("{}:{}: a face has {} corners, and more than {} are not supported", at.path, at.line, corners,
+             max_face_corners);
     if (corners < 3)
         fail("{}:{}: a face has {} corners, but it needs three", at.path, at.line, corners);
 }
@@ -103,41 +111,31 @@ void count(Totals& totals, std::string_view keyword) {
 
 } // namespace
 
-ObjCounts check_obj(const std::string& path, std::string_view text) {
+CheckedObj check_obj(const std::string& path, std::string_view text) {
     Totals totals;
     for_each_line(text, [&](std::size_t, std::string_view keyword, std::string_view) { count(totals, keyword); });
 
     Totals current;
-    ObjCounts counts;
+    CheckedObj result;
     for_each_line(text, [&](std::size_t number, std::string_view keyword, std::string_view line) {
         const Position at{path, number};
         count(current, keyword);
         if (!keyword.empty() && line.ends_with('\\') && keyword.front() != '#')
             fail("{}:{}: a line that goes on after \"\\\" is not supported", path, number);
-        if (keyword == "v" || keyword == "vt" || keyword == "vn") {
-            check_numbers(at, keyword, line);
-            counts.has_w |= keyword == "vt" && !take_word(line).empty();
-        } else if (keyword == "f") {
-            check_face(at, line, current, totals);
-            ++counts.faces;
-        }
-    });
-    counts.vertices = totals.v;
-    return counts;
-}
-
-std::string without_w(std::string text) {
-    std::vector<std::string_view> surplus;
-    for_each_line(text, [&](std::size_t, std::string_view keyword, std::string_view line) {
-        if (keyword != "vt")
+        const bool has_numbers = keyword == "v" || keyword == "vt" || keyword == "vn";
+        if (!has_numbers && keyword != "f")
             return;
-        take_word(line);
-        take_word(line);
-        surplus.push_back(line);
+        result.text += keyword;
+        if (has_numbers) {
+            check_numbers(at, keyword, line, result.text);
+        } else {
+            check_face(at, line, current, totals, result.text);
+            ++result.faces;
+        }
+        result.text += '\n';
     });
-    for (const std::string_view part : surplus)
-        std::fill_n(text.begin() + (part.data() - text.data()), part.size(), ' ');
-    return text;
+    result.vertices = totals.v;
+    return result;
 }
 
 } // namespace tristim

@@ -16,6 +16,10 @@ namespace tristim {
 namespace {
 
 const std::set<std::string> real_types = {"float", "float32", "double", "float64"};
+const std::map<std::string, std::size_t> type_bytes = {{"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},
+                                                       {"short", 2}, {"ushort", 2},  {"int16", 2},  {"uint16", 2},
+                                                       {"int", 4},   {"uint", 4},    {"int32", 4},  {"uint32", 4},
+                                                       {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
 const std::set<std::string> integer_types = {"char", "uchar", "short", "ushort", "int",   "uint",
                                              "int8", "uint8", "int16", "uint16", "int32", "uint32"};
 /// Types of the number of corners of a face that OpenMesh reads.
@@ -57,6 +61,8 @@ class HeaderReader {
     void read_list();
     const Element* find(const std::string& name) const;
     void check_elements() const;
+    std::size_t least_row_bytes(const Element& element) const;
+    void check_size() const;
     /// The names of the properties that are read, with the names that OpenMesh knows them by.
     std::map<std::string, std::string> needed_properties(const Element& element) const;
     std::string rewritten() const;
@@ -159,6 +165,31 @@ void HeaderReader::check_elements() const {
         fail("{}: the faces of this PLY file lack \"vertex_indices\"", path_);
 }
 
+/// The bytes of a line of an element, without the entries of its list; in a text file, of single digits with blanks.
+std::size_t HeaderReader::least_row_bytes(const Element& element) const {
+    std::size_t bytes = 0;
+    for (const auto& [type, name] : element.properties) {
+        const std::string first = type.starts_with("list ") ? type.substr(5, type.find(' ', 5) - 5) : type;
+        bytes += format_ == "ascii" ? 2 : type_bytes.at(first);
+    }
+    return bytes;
+}
+
+/// The reader makes as many vertices and faces as the header says, whatever the file holds.
+void HeaderReader::check_size() const {
+    std::size_t left = bytes_.size() - position_ + 1; // the last line of a text may have no end
+    for (const Element& element : elements_) {
+        const std::size_t row = least_row_bytes(element);
+        if (element.count > 0 && (row == 0 || element.count > left / row))
+            fail("{}: the PLY file is cut short or malformed: its {} bytes cannot hold {} lines of \"{}\"", path_,
+                 bytes_.size(), element.count, element.name);
+        left -= element.count * row;
+        // What follows the faces is not read.
+        if (element.name == "face")
+            break;
+    }
+}
+
 std::map<std::string, std::string> HeaderReader::needed_properties(const Element& element) const {
     std::map<std::string, std::string> needed;
     if (element.name == "face")
@@ -221,6 +252,7 @@ PlyHeader HeaderReader::read() {
             refuse("unknown keyword \"{}\" in the PLY header", keyword);
     }
     check_elements();
+    check_size();
     return {find("vertex")->count, find("face")->count, rewritten(), position_};
 }
 

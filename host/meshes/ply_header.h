@@ -16,7 +16,8 @@ struct PlyHeader {
 
 /// Throws Error "path: …" or "path:line: …" unless `bytes` begins with a well-formed header: format 1.0 of any of the
 /// three encodings, an element "vertex" with x, y, z (and nx, ny, nz or none of them) of type float or double, and
-/// after it an element "face" whose first property and only list is "vertex_indices" (or "vertex_index").
+/// after it an element "face" whose first property and only list is "vertex_indices" (or "vertex_index"); nor if the
+/// header promises more elements than the file has room for.
 PlyHeader read_ply_header(const std::string& path, const std::string& bytes);
 
 } // namespace tristim

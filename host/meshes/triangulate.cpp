@@ -44,16 +44,38 @@ std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<V3f>& corn
     const V3d normal = polygon_normal(corners);
     std::vector<std::size_t> ring(corners.size());
     std::iota(ring.begin(), ring.end(), std::size_t{0});
+    // Cutting off an ear of a simple polygon makes or unmakes ears of its two neighbours alone (Meisters 1975), so that
+    // the other corners need no second look until no ear is known. That happens where corners are collinear or edges
+    // cross; the time that is spent on looking then has a limit.
+    constexpr std::size_t most_tests = 100'000'000;
+    std::size_t looks_left = most_tests / (corners.size() * corners.size());
+    std::vector<bool> is_known_ear(corners.size());
+    const auto look_at_all = [&] {
+        for (std::size_t at = 0; at < ring.size(); ++at)
+            is_known_ear[ring[at]] = is_ear(corners, ring, at, normal);
+    };
+    const auto find_ear = [&] {
+        return static_cast<std::size_t>(
+            std::find_if(ring.begin(), ring.end(), [&](std::size_t corner) { return is_known_ear[corner]; }) -
+            ring.begin());
+    };
+    if (ring.size() > 3)
+        look_at_all();
     while (ring.size() > 3) {
-        std::size_t ear = 0;
-        while (ear < ring.size() && !is_ear(corners, ring, ear, normal))
-            ++ear;
+        std::size_t ear = find_ear();
+        if (ear == ring.size() && looks_left > 0) {
+            look_at_all();
+            --looks_left;
+            ear = find_ear();
+        }
         // Collinear or self-intersecting corners leave no ear: cut off any one.
         if (ear == ring.size())
             ear = 1;
         const std::size_t n = ring.size();
         triangles.push_back({ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]});
         ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
+        for (const std::size_t at : {(ear + n - 2) % (n - 1), ear % (n - 1)})
+            is_known_ear[ring[at]] = is_ear(corners, ring, at, normal);
     }
     triangles.push_back({ring[0], ring[1], ring[2]});
     return triangles;

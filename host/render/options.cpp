@@ -34,7 +34,7 @@ void check_options(const RenderOptions& options) {
         fail("resolution {}x{} is not between 1x1 and {}x{}", options.width, options.height, largest_side,
              largest_side);
     const Region& r = options.region;
-    if (r.pixels() < 1 || !contains({0, 0, options.width, options.height}, r))
+    if (!contains({0, 0, options.width, options.height}, r) || r.pixels() < 1)
         fail("region {},{},{},{} is empty or not inside the {}x{} image", r.x, r.y, r.x + r.width, r.y + r.height,
              options.width, options.height);
     if (options.photons_per_pass < 1 || options.photons_per_pass > most_photons)

@@ -4,7 +4,6 @@
 #include "spectra/complex_index.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tristim {
 
@@ -22,20 +21,18 @@ std::vector<double> thicknesses(ParameterList& parameters, TextureTable& texture
         const FloatTexture& found = textures.find(texture_name, where);
         values.push_back(found.value);
         if (found.pattern) {
-            const auto [low, high] = value_range(*found.pattern);
+            const double low = value_range(*found.pattern)[0];
             if (low < 0.0)
                 fail_at(where, "the film thickness cannot be the texture \"{}\", which is {} somewhere", texture_name,
                         low);
-            if (high > std::numeric_limits<float>::max())
-                fail_at(where, "the film thickness cannot be the texture \"{}\", which is too large", texture_name);
             texture = textures.use(found);
         }
     }
     if (values.empty())
         fail_at(where, "\"{}\" of {} holds no thickness", name, parameters.owner());
     for (const double value : values) {
-        if (value < 0.0 || value > std::numeric_limits<float>::max())
-            fail_at(where, "the film thickness {} nm in \"{}\" must be at least 0 and finite", value, name);
+        if (value < 0.0)
+            fail_at(where, "the film thickness {} nm in \"{}\" must be at least 0", value, name);
     }
     return values;
 }

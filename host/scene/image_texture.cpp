@@ -60,6 +60,9 @@ Texture::Wrap wrap_mode(ParameterList& parameters) {
             "the wrap mode \"{}\" is not supported: it may be \"repeat\", \"clamp\" or \"black\"", wrap);
 }
 
+/// A gigabyte of floats. The head of a file of a few bytes may promise much more.
+constexpr double most_values = 1 << 28;
+
 struct Pixels {
     int width = 0, height = 0;
     std::size_t channels = 0;
@@ -78,6 +81,10 @@ Pixels read_pixels(const std::string& path) {
     const OIIO::ImageSpec& spec = input->spec();
     if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0)
         fail("cannot read \"{}\": it is not a flat image", path);
+    const auto values = static_cast<double>(spec.width) * spec.height * spec.nchannels;
+    if (values > most_values)
+        fail("cannot use \"{}\" as a texture: {} by {} pixels of {} channels are more than {:.0f} values", path,
+             spec.width, spec.height, spec.nchannels, most_values);
     Pixels pixels{spec.width,
                   spec.height,
                   static_cast<std::size_t>(spec.nchannels),

@@ -70,6 +70,14 @@ void set_distant(Light& light, ParameterList& parameters, const M44d& ctm) {
 
 } // namespace
 
+void check_light(const Light& light, const SourceLocation& where) {
+    const auto scale = static_cast<float>(light.scale);
+    if (!(scale > 0.0F) || !std::isfinite(scale))
+        fail_at(where, "a light's strength, {} times its spectrum, cannot be held in single precision", light.scale);
+    if (!is_finite_float(light.position) || !is_finite_float(light.direction))
+        fail_at(where, "the current transformation is too large for a light");
+}
+
 Light make_light(const std::string& kind, ParameterList& parameters, const M44d& ctm, const PathResolver& resolve) {
     Light light;
     if (kind != "point" && kind != "spot" && kind != "distant" && kind != "infinite")
@@ -96,6 +104,7 @@ Light make_light(const std::string& kind, ParameterList& parameters, const M44d&
             light.scale *= *illuminance / pi;
     }
     parameters.finish();
+    check_light(light, parameters.where());
     return light;
 }
 

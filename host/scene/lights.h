@@ -12,6 +12,9 @@ namespace tristim {
 /// defaults and normalisation. Throws Error for any other kind and for parameters that are unknown or out of range.
 Light make_light(const std::string& kind, ParameterList& parameters, const M44d& ctm, const PathResolver& resolve);
 
+/// Throws Error "file:line: …" unless scale > 0, position and direction can be held in single precision.
+void check_light(const Light& light, const SourceLocation& where);
+
 /// An AreaLightSource "diffuse" that waits for its shape.
 struct AreaLight {
     Light light;

@@ -4,6 +4,7 @@
 #include "spectra/rgb_upsampling.h"
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 /// The directives before WorldBegin: camera, film and what says how to render.
@@ -26,8 +27,25 @@ double positive_number(ParameterList& parameters, const std::string& name, doubl
     return value;
 }
 
+int stratified_samples(ParameterList& parameters) {
+    const std::int64_t x = positive_integer(parameters, "xsamples", 4);
+    const std::int64_t y = positive_integer(parameters, "ysamples", 4);
+    if (x * y > std::numeric_limits<int>::max())
+        fail_at(parameters.where("xsamples"), "{} has {} times {} samples, which is more than {}", parameters.owner(),
+                x, y, std::numeric_limits<int>::max());
+    return static_cast<int>(x * y);
+}
+
 std::uint32_t seed_parameter(ParameterList& parameters) {
     return static_cast<std::uint32_t>(parameters.integer("seed", 0));
+}
+
+/// The kernels take the window's size in single precision.
+void check_screen_window(const std::array<double, 4>& window, const SourceLocation& where) {
+    const auto& [x0, x1, y0, y1] = window;
+    constexpr double largest = std::numeric_limits<float>::max();
+    if (!(x1 - x0 <= largest && y1 - y0 <= largest))
+        fail_at(where, "the screen window of {} by {} is too large", x1 - x0, y1 - y0);
 }
 
 void require_known(const std::set<std::string>& names, const std::string& kind, const ParameterList& parameters) {
@@ -44,6 +62,8 @@ void SceneBuilder::camera(const std::string& kind, ParameterList parameters) {
     Camera& camera = scene_.camera;
     camera = Camera{};
     camera.camera_to_world = with_location(parameters.where(), [&] { return inverse_transform(state_.ctm); });
+    if (!is_finite_float(camera.camera_to_world))
+        fail_at(parameters.where(), "the current transformation is too large for a camera");
     coordinate_systems_["camera"] = camera.camera_to_world;
     camera.fov_degrees = parameters.number("fov", 90.0);
     if (camera.fov_degrees <= 0.0 || camera.fov_degrees >= 180.0)
@@ -59,12 +79,14 @@ void SceneBuilder::camera(const std::string& kind, ParameterList parameters) {
         const double x = aspect > 1.0 ? aspect : 1.0;
         const double y = aspect > 1.0 ? 1.0 : 1.0 / aspect;
         camera.screen_window = {-x, x, -y, y};
+        check_screen_window(*camera.screen_window, parameters.where("frameaspectratio"));
     }
     if (parameters.has("screenwindow")) {
         const std::vector<double> window = parameters.numbers("screenwindow");
         if (window.size() != 4 || window[0] >= window[1] || window[2] >= window[3])
             fail_at(parameters.where("screenwindow"), "\"screenwindow\" takes four numbers: x0 < x1 and y0 < y1");
         camera.screen_window = {window[0], window[1], window[2], window[3]};
+        check_screen_window(*camera.screen_window, parameters.where("screenwindow"));
     }
     for (const char* name : {"shutteropen", "shutterclose"}) {
         if (parameters.ignore(name))
@@ -112,7 +134,7 @@ void SceneBuilder::sampler(const std::string& kind, ParameterList parameters) {
          fmt::format("{} is ignored but for its number of samples and its seed", parameters.owner()));
     RenderSettings& settings = scene_.settings;
     if (kind == "stratified")
-        settings.passes = positive_integer(parameters, "xsamples", 4) * positive_integer(parameters, "ysamples", 4);
+        settings.passes = stratified_samples(parameters);
     else
         settings.passes = positive_integer(parameters, "pixelsamples", 16);
     if (parameters.has("seed"))

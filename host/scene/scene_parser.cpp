@@ -14,6 +14,12 @@ namespace tristim {
 
 namespace {
 
+/// Files within files: deeper ones include themselves by ever longer paths.
+constexpr std::size_t deepest_include = 64;
+/// All together, so that a few files that include each other several times cannot go on for ever.
+constexpr std::size_t most_includes = 100'000;
+
+/// The finite number that is all of the text, else none.
 std::optional<double> parse_number(const std::string& text) {
     const char* begin = text.data() + (text.size() > 1 && text.front() == '+' ? 1 : 0);
     const char* end = text.data() + text.size();
@@ -22,6 +28,12 @@ std::optional<double> parse_number(const std::string& text) {
     if (error != std::errc() || stop != end || !std::isfinite(value))
         return std::nullopt;
     return value;
+}
+
+/// pbrt's numbers are floats, and so are the kernels'.
+void check_float(double value, const Token& token) {
+    if (std::abs(value) > std::numeric_limits<float>::max())
+        fail_at(token.where, "the number {} is too large: it must be finite in single precision", token.text);
 }
 
 /// Directives of pbrt-v4 that this program knows of but does not support.
@@ -188,6 +200,9 @@ void SceneParser::include(const Token& word) {
         std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file->path() == path; });
     if (circular)
         fail_at(word.where, "the file \"{}\" includes itself", name);
+    if (files_.size() > deepest_include || ++includes_ > most_includes)
+        fail_at(word.where, "the file \"{}\" is one too many: a scene has at most {} includes, {} within each other",
+                name, most_includes, deepest_include);
     files_.push_back(with_location(word.where, [&] { return std::make_unique<Tokenizer>(path); }));
 }
 
@@ -204,6 +219,7 @@ double SceneParser::expect_number(const Token& directive) {
     const std::optional<double> value = token.kind == Token::Kind::Word ? parse_number(token.text) : std::nullopt;
     if (!value)
         fail_at(token.where, "\"{}\" in \"{}\" is not a finite number", token.text, directive.text);
+    check_float(*value, token);
     return *value;
 }
 
@@ -289,6 +305,7 @@ void SceneParser::add_value(Parameter& parameter, const Token& value) const {
     if (parameter.type == "integer" &&
         (*number != std::floor(*number) || std::abs(*number) > std::numeric_limits<int>::max()))
         fail_at(value.where, "\"{}\" in the parameter \"{}\" is not an integer", value.text, parameter.name);
+    check_float(*number, value);
     parameter.numbers.push_back(*number);
 }
 

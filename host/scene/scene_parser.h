@@ -38,6 +38,7 @@ class SceneParser {
 
     SceneBuilder& builder_;
     std::vector<std::unique_ptr<Tokenizer>> files_; ///< the innermost include last
+    std::size_t includes_ = 0;                      ///< so far
     Token peeked_;
     bool has_peeked_ = false;
 };

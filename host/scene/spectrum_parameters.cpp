@@ -76,7 +76,7 @@ void check_index(const Spectrum& spectrum, const std::string& name, bool may_be_
         fail_at(where, "the spectrum \"{}\" covers only {} to {} nm, not all of {} to {} nm", name, from, to,
                 lambda_min_nm, lambda_max_nm);
     const auto allowed = [may_be_zero](double value) {
-        return std::isfinite(value) && (may_be_zero ? value >= 0.0 : value > 0.0);
+        return std::isfinite(static_cast<float>(value)) && (may_be_zero ? value >= 0.0 : value > 0.0);
     };
     if (const auto nm = first_violation(spectrum, allowed))
         fail_at(where, "the spectrum \"{}\" is {} at {} nm, where it must be {}", name, spectrum(*nm), *nm,
@@ -119,7 +119,10 @@ Spectrum emission_parameter(ParameterList& parameters, const std::string& name, 
     const double reference = is_rgb ? spectrum_to_xyz(Spectrum::rgb_illuminant_white())[1] : y;
     if (!(y > 0.0))
         fail_at(where, "the emission \"{}\" is zero over all visible wavelengths", name);
-    return raw.scaled(1.0 / reference);
+    const Spectrum result = raw.scaled(1.0 / reference);
+    if (first_violation(result, [](double value) { return std::isfinite(static_cast<float>(value)); }))
+        fail_at(where, "the emission \"{}\" is too weak: its luminous part is {}", name, y);
+    return result;
 }
 
 } // namespace tristim

@@ -28,6 +28,8 @@ void set_mapping(Texture& texture, ParameterList& parameters, const M44d& ctm) {
     if (to_texture[0][3] != 0.0 || to_texture[1][3] != 0.0 || to_texture[2][3] != 0.0)
         fail_at(parameters.where(), "{}: a space in perspective is not supported", parameters.owner());
     to_texture *= 1.0 / to_texture[3][3];
+    if (!is_finite_float(to_texture))
+        fail_at(parameters.where(), "{}: the current transformation is too large", parameters.owner());
     if (mapping == "planar") {
         texture.mapping = Texture::Mapping::Planar;
         const V3d v1 = parameters.vector("v1", V3d(1.0, 0.0, 0.0));
@@ -37,6 +39,8 @@ void set_mapping(Texture& texture, ParameterList& parameters, const M44d& ctm) {
                             v1.z, v2.z, 0.0, 0.0, //
                             parameters.number("udelta", 0.0), parameters.number("vdelta", 0.0), 0.0, 1.0);
         to_texture = to_texture * to_plane;
+        if (!is_finite_float(to_texture))
+            fail_at(parameters.where(), "{}: \"v1\" or \"v2\" is too large", parameters.owner());
     } else if (mapping == "spherical") {
         texture.mapping = Texture::Mapping::Spherical;
     } else if (mapping == "cylindrical") {
@@ -72,6 +76,20 @@ FloatTexture affine(const FloatTexture& texture, double factor, double offset) {
     pattern->outside = change(pattern->outside);
     result.pattern = std::move(pattern);
     return result;
+}
+
+/// Scales and mixtures of scales may leave the range of single precision.
+void check_values(const FloatTexture& texture, const std::string& name, const SourceLocation& where) {
+    const auto is_finite = [](double value) { return std::isfinite(static_cast<float>(value)); };
+    bool all_finite = is_finite(texture.value);
+    if (texture.pattern) {
+        const Texture& pattern = *texture.pattern;
+        all_finite &= is_finite(pattern.outside) &&
+                      std::all_of(pattern.corners.begin(), pattern.corners.end(), is_finite) &&
+                      std::all_of(pattern.texels.begin(), pattern.texels.end(), is_finite);
+    }
+    if (!all_finite)
+        fail_at(where, "the values of the texture \"{}\" are too large", name);
 }
 
 /// pbrt-v4's mappings.
@@ -134,6 +152,7 @@ void TextureTable::define(const std::string& name, const std::string& type, cons
                 name, kind);
     }
     parameters.finish();
+    check_values(texture, name, where);
     texture.name = name;
     by_name_.emplace(name, std::move(texture));
 }

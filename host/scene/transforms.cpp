@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,7 +56,21 @@ M44d inverse_transform(const M44d& matrix) {
     const double det = determinant(matrix);
     if (det == 0.0 || !std::isfinite(det))
         fail("the current transformation cannot be inverted");
-    return matrix.inverse();
+    const M44d inverse = matrix.inverse();
+    // Imath's answer where the inverse overflows, or where the fourth column makes the matrix singular.
+    if (inverse == M44d() && matrix != M44d())
+        fail("the current transformation cannot be inverted");
+    return inverse;
+}
+
+bool is_finite_float(const V3d& v) {
+    const Imath::V3f single(v);
+    return std::isfinite(single.x) && std::isfinite(single.y) && std::isfinite(single.z);
+}
+
+bool is_finite_float(const M44d& matrix) {
+    const double* const entries = matrix.getValue();
+    return std::all_of(entries, entries + 16, [](double entry) { return std::isfinite(static_cast<float>(entry)); });
 }
 
 V3d transform_point(const M44d& matrix, const V3d& point) {

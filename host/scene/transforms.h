@@ -29,6 +29,12 @@ M44d matrix_from_list(const std::array<double, 16>& values);
 /// Throws Error if the matrix is singular or not finite.
 M44d inverse_transform(const M44d& matrix);
 
+/// Whether all entries are finite in single precision.
+bool is_finite_float(const M44d& matrix);
+
+/// Whether all coordinates are finite in single precision.
+bool is_finite_float(const V3d& v);
+
 V3d transform_point(const M44d& matrix, const V3d& point);
 V3d transform_vector(const M44d& matrix, const V3d& vector);
 

@@ -126,10 +126,10 @@ void check_index(const ComplexIndex& index, const std::string& name) {
     check_part(index.eta, "n", name);
     check_part(index.k, "k", name);
     const double eta = index.eta.minimum(lambda_min_nm, lambda_max_nm);
-    if (!(eta > 0.0) || !std::isfinite(eta))
+    if (!(eta > 0.0) || !std::isfinite(static_cast<float>(eta)))
         fail("n of the refractive index {} must be positive and finite, not {}", name, eta);
     const double k = index.k.minimum(lambda_min_nm, lambda_max_nm);
-    if (!(k >= 0.0) || !std::isfinite(k))
+    if (!(k >= 0.0) || !std::isfinite(static_cast<float>(k)))
         fail("k of the refractive index {} must be finite and not negative, not {}", name, k);
 }
 

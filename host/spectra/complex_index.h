@@ -33,7 +33,8 @@ std::vector<std::string> index_tables(const std::string& name);
 /// check_index().
 ComplexIndex parse_index(const std::string& text, const std::function<std::string(const std::string&)>& resolve = {});
 
-/// Throws Error unless eta > 0 and k >= 0 are finite and given over the visible range. `name` stands for the index.
+/// Throws Error unless eta > 0 and k >= 0 are finite in single precision and given over the visible range. `name`
+/// stands for the index.
 void check_index(const ComplexIndex& index, const std::string& name);
 
 } // namespace tristim

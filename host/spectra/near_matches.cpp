@@ -9,7 +9,10 @@ namespace tristim {
 
 namespace {
 
-std::string lower_case(std::string text) {
+/// In lower case and without an end that no name has: comparing two texts takes a time that grows with both.
+std::string comparable(std::string text) {
+    constexpr std::size_t longest = 100;
+    text.resize(std::min(text.size(), longest));
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
@@ -33,10 +36,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 } // namespace
 
 std::string near_matches(const std::string& unknown, const std::vector<std::string>& names) {
-    const std::string wanted = lower_case(unknown);
+    const std::string wanted = comparable(unknown);
     std::vector<std::pair<std::size_t, std::string>> ranked;
     for (const std::string& name : names) {
-        const std::string candidate = lower_case(name);
+        const std::string candidate = comparable(name);
         const bool contains = !wanted.empty() && candidate.find(wanted) != std::string::npos;
         ranked.emplace_back(contains ? 0 : edit_distance(wanted, candidate), name);
     }

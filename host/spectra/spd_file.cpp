@@ -1,6 +1,7 @@
 #include "spectra/spd_file.h"
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,9 @@ double parse_number(std::string_view word, const std::string& name, int line) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
     if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(number))
         fail("{}:{}: \"{}\" is not a finite number", name, line, word);
+    // The kernels' tables are in single precision.
+    if (std::abs(number) > std::numeric_limits<float>::max())
+        fail("{}:{}: \"{}\" is too large for a finite number in single precision", name, line, word);
     return number;
 }
 
@@ -60,6 +65,7 @@ Spectrum parse_spd(std::string_view text, const std::string& name) {
 }
 
 Spectrum Spectrum::read_spd(const std::string& path) {
+    refuse_device(path);
     std::ifstream file(path, std::ios::binary);
     std::string text;
     std::array<char, 65536> block;
