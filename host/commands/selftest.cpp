@@ -44,7 +44,8 @@ std::vector<selftest::Case> chosen_cases(const std::vector<std::string>& groups)
 void list(const std::vector<selftest::Case>& cases) {
     fmt::print("{:<14}{:<46}{:>9}{:>9}  {}\n", "group", "case", "precise", "fast", "bounds of");
     for (const selftest::Case& c : cases)
-        fmt::print("{:<14}{:<46}{:>9.2g}{:>9.2g}  {}\n", c.group, c.name, c.bound, c.fast_bound, c.error);
+        fmt::print("{:<14}{:<46}{:>9}{:>9}  {}\n", c.group, c.name, selftest::bound_text(c.bound),
+                   selftest::bound_text(c.fast_bound), c.error);
 }
 
 void run(const Command& command) {

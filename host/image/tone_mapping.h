@@ -24,7 +24,7 @@ namespace tristim {
 ///
 /// L_white = max(1, a · Y_high / Y_mean): the paper takes the maximum, which one outlier would make useless. It does
 /// not depend on the exposure, so that raising it burns out the highlights, as in a camera. At L_white = 1, for images
-/// of low contrast, the curve is the identity.
+/// of low contrast or without any light, the curve is the identity.
 ///
 /// Linear: Y' = 2^exposure · Y.
 struct ToneMapping {
@@ -48,7 +48,7 @@ class ToneCurve {
     double gain(double y) const;
 
     double scale_ = 1.0;                 ///< L / Y
-    double inverse_white_squared_ = 0.0; ///< 1 / L_white²
+    double inverse_white_squared_ = 1.0; ///< 1 / L_white²
     bool compresses_ = false;
 };
 

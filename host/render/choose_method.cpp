@@ -103,10 +103,10 @@ class Trials {
     bool affordable() const { return choice.seconds < most_trial_share * choice.budget_seconds; }
 
     /// Whether twice the wavelengths of `wide` may be worthwhile: at best theirs no longer vary, a pass takes as long,
-    /// and paths vary as they did for half as many, `narrow`, and `wide`, by a term as 1/C.
-    bool doubling_may_pay(const MethodTrial& narrow, MethodTrial wide) const {
+    /// and paths vary as they did for half as many, `half`, and `wide`, by a term as 1/C.
+    bool doubling_may_pay(const MethodTrial& half, MethodTrial wide) const {
         wide.wavelength_variance = 0.0;
-        wide.path_variance = std::max(0.0, 1.5 * wide.path_variance - 0.5 * narrow.path_variance);
+        wide.path_variance = std::max(0.0, 1.5 * wide.path_variance - 0.5 * half.path_variance);
         return error_of(wide) < worthwhile * least_error_;
     }
 

@@ -42,7 +42,7 @@ struct Case {
     const char* parameter; ///< of the curve, with its unit: "thickness / nm"
     const char* error;     ///< what the error is: "reflectance, absolute"
     double bound;          ///< of `--math precise`
-    double fast_bound;     ///< of `--math fast`
+    double fast_bound;     ///< of `--math fast`; infinite if it promises no more than finite results
     std::function<Measurement(const Setting&)> measure;
 };
 

@@ -16,6 +16,14 @@ std::string quoted(const std::string& text) {
 
 } // namespace
 
+std::string bound_text(double bound) {
+    return std::isinf(bound) ? "finite" : fmt::format("{:.2g}", bound);
+}
+
+bool Outcome::passed() const {
+    return failure.empty() && found.inputs > 0 && std::isfinite(found.worst) && found.worst <= bound();
+}
+
 Outcome run(const Case& tested, const Setting& setting) {
     Outcome outcome{tested, setting.fast_math, {}, {}, 0.0};
     const Stopwatch stopwatch;
@@ -37,8 +45,9 @@ std::string table(const std::vector<Outcome>& outcomes) {
                                    "worst error", "bound", "", "of");
     std::string failures;
     for (const Outcome& o : outcomes) {
-        text += fmt::format("{:<14}{:<46}{:>9}  {:>11.2e}  {:>8.2g}  {:<6}  {}\n", o.tested.group, o.tested.name,
-                            o.found.inputs, o.found.worst, o.bound(), o.passed() ? "ok" : "FAILED", o.tested.error);
+        text += fmt::format("{:<14}{:<46}{:>9}  {:>11.2e}  {:>8}  {:<6}  {}\n", o.tested.group, o.tested.name,
+                            o.found.inputs, o.found.worst, bound_text(o.bound()), o.passed() ? "ok" : "FAILED",
+                            o.tested.error);
         if (!o.failure.empty())
             failures += fmt::format("{}, {}: {}\n", o.tested.group, o.tested.name, o.failure);
         else if (!o.passed())

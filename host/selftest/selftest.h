@@ -17,8 +17,11 @@ struct Outcome {
     double seconds = 0.0;
 
     double bound() const { return fast_math ? tested.fast_bound : tested.bound; }
-    bool passed() const { return failure.empty() && found.inputs > 0 && found.worst <= bound(); }
+    bool passed() const;
 };
+
+/// A bound as tables show it.
+std::string bound_text(double bound);
 
 /// Runs a case; what it throws becomes the outcome's failure, so that the others still run.
 Outcome run(const Case& tested, const Setting& setting);

@@ -63,8 +63,9 @@ TEST(Selftest, WorstErrorAndCurve) {
 }
 
 TEST(Selftest, ACasePassesOnlyIfItMeasuredWithinItsBound) {
-    const auto outcome = [](double error, int count) {
-        const Case c{"group", "name", "parameter", "error", 1e-3, 1e-1, [=](const selftest::Setting&) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto outcome = [](double error, int count, double bound = 1e-3) {
+        const Case c{"group", "name", "parameter", "error", bound, 1e-1, [=](const selftest::Setting&) {
                          Measurement found;
                          for (int i = 0; i < count; ++i)
                              found.add(i, error, [] { return "here"; });
@@ -76,6 +77,8 @@ TEST(Selftest, ACasePassesOnlyIfItMeasuredWithinItsBound) {
     EXPECT_FALSE(outcome(1.1e-3, 2).passed());
     EXPECT_FALSE(outcome(0.0, 0).passed()) << "nothing was measured";
     EXPECT_FALSE(outcome(std::nan(""), 1).passed());
+    EXPECT_TRUE(outcome(1e30, 1, infinity).passed()) << "nothing promised but finite results";
+    EXPECT_FALSE(outcome(std::nan(""), 1, infinity).passed());
     const std::string table = selftest::table({outcome(1.1e-3, 2)});
     EXPECT_NE(table.find("FAILED"), std::string::npos) << table;
     EXPECT_NE(table.find("here"), std::string::npos) << table;
