@@ -9,6 +9,8 @@
 #include "meshes/triangulate.h"
 #include "scene/scene_parser.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -89,9 +91,9 @@ TEST(LoaderLimits, FacesHaveAMostNumberOfCorners) {
     constexpr int too_many = 10001;
     std::string vertices, face = "f", indices = std::to_string(too_many);
     for (int i = 1; i <= too_many; ++i) {
-        vertices += "v " + std::to_string(i) + " " + std::to_string(i % 7) + " 0\n";
-        face += " " + std::to_string(i);
-        indices += " " + std::to_string(i - 1);
+        vertices += fmt::format("v {} {} 0\n", i, i % 7);
+        face += fmt::format(" {}", i);
+        indices += fmt::format(" {}", i - 1);
     }
     expect_refusal(obj_error(vertices + face + "\n"), "10001 corners");
     std::string lines;
