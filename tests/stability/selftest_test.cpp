@@ -158,8 +158,7 @@ TEST(SelftestCommand, PassesOnOclgrindWithoutAReport) {
         "selftest", "--device",    "oclgrind", "--effort", long_tests() ? "0.01" : "0.001",
         "--math",   "precise",     "--quiet"};
     if (!long_tests())
-        arguments.insert(arguments.end(),
-                         {"--group", "optics", "--group", "photon", "--group", "accumulation", "--group", "sequence"});
+        arguments.insert(arguments.end(), {"--group", "optics", "--group", "photon"});
     const ChildResult result = run_program("/usr/bin/env", arguments);
     EXPECT_EQ(result.exit_code, 0) << result.standard_output << result.standard_error;
     EXPECT_EQ(read_text(log), "");
