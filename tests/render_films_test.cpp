@@ -18,26 +18,15 @@ FilmLayer layer(double thickness, double eta_at_300, double eta_at_900) {
     return {thickness, Spectrum::piecewise_linear({300.0, 900.0}, {eta_at_300, eta_at_900}), Spectrum::constant(0.0)};
 }
 
-int with_film(Scene& scene, int material, const std::vector<FilmLayer>& layers) {
-    scene.materials[static_cast<std::size_t>(material)].film.layers = layers;
-    return material;
-}
-
-void add_facet_sphere(Scene& scene, const V3d& centre, double radius, int material) {
-    add_sphere(scene, radius, 2, false, material);
-    for (V3d& position : scene.shapes.back().mesh.positions)
-        position += centre;
-}
-
 /// Spheres that absorb nothing: one layer, a stack on `glass`, and a bubble.
 void add_lossless_spheres(Scene& scene, const Spectrum& glass) {
     const int coated = with_film(scene, add_dielectric(scene, Spectrum::constant(1.5)), {layer(320.0, 1.48, 1.45)});
     const int stack = with_film(scene, add_dielectric(scene, glass),
                                 {layer(94.0, 1.47, 1.45), layer(55.0, 2.9, 2.4), layer(94.0, 1.47, 1.45)});
     const int bubble = with_film(scene, add_dielectric(scene, Spectrum::constant(1.0)), {layer(420.0, 1.35, 1.33)});
-    add_facet_sphere(scene, {-0.9, 0.0, 0.7}, 0.4, coated);
-    add_facet_sphere(scene, {0.0, 0.0, 0.7}, 0.4, stack);
-    add_facet_sphere(scene, {0.9, 0.0, 0.7}, 0.4, bubble);
+    add_sphere(scene, 0.4, 2, false, coated, {-0.9, 0.0, 0.7});
+    add_sphere(scene, 0.4, 2, false, stack, {0.0, 0.0, 0.7});
+    add_sphere(scene, 0.4, 2, false, bubble, {0.9, 0.0, 0.7});
 }
 
 /// White under a film whose thickness varies from 100 to 600 nm over the floor.
@@ -227,9 +216,9 @@ TEST(FilmScene, SpectralAndTristimulusRenderingAgree) {
     const int floor = with_film(
         scene, add_diffuse(scene, Spectrum::piecewise_linear({300.0, 500.0, 600.0, 900.0}, {0.2, 0.3, 0.9, 0.9})),
         {layer(250.0, 1.9, 1.8)});
-    add_facet_sphere(scene, {-0.9, 0.0, 0.7}, 0.4, glass);
-    add_facet_sphere(scene, {0.0, 0.0, 0.7}, 0.4, metal);
-    add_facet_sphere(scene, {0.9, 0.0, 0.7}, 0.4, rough);
+    add_sphere(scene, 0.4, 2, false, glass, {-0.9, 0.0, 0.7});
+    add_sphere(scene, 0.4, 2, false, metal, {0.0, 0.0, 0.7});
+    add_sphere(scene, 0.4, 2, false, rough, {0.9, 0.0, 0.7});
     add_horizontal_square(scene, 2.0, 0.0, true, floor);
     const int light = add_area_light(scene, Spectrum::named("stdillum-F11"), 4.0);
     add_parallelogram(scene, {-0.8, -0.8, 3.0}, {0, 1.6, 0}, {1.6, 0, 0}, add_diffuse(scene, Spectrum::constant(0.0)),

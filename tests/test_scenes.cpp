@@ -72,6 +72,11 @@ int add_conductor(Scene& scene, const Spectrum& eta, const Spectrum& k) {
     return add_material(scene, material);
 }
 
+int with_film(Scene& scene, int material, const std::vector<FilmLayer>& layers) {
+    scene.materials[static_cast<std::size_t>(material)].film.layers = layers;
+    return material;
+}
+
 Light environment(const Spectrum& emission) {
     Light light;
     light.kind = Light::Kind::Infinite;
@@ -112,11 +117,11 @@ void add_box(Scene& scene, const V3d& low, const V3d& high, bool inwards, int ma
     }
 }
 
-void add_sphere(Scene& scene, double radius, int subdivisions, bool vertex_normals, int material) {
+void add_sphere(Scene& scene, double radius, int subdivisions, bool vertex_normals, int material, const V3d& centre) {
     const Icosphere sphere = make_icosphere(subdivisions);
     Shape shape;
     for (const V3d& position : sphere.positions) {
-        shape.mesh.positions.push_back(radius * position);
+        shape.mesh.positions.push_back(centre + radius * position);
         if (vertex_normals)
             shape.mesh.normals.push_back(to_float(position));
     }

@@ -27,6 +27,9 @@ int add_diffuse(Scene& scene, const Spectrum& reflectance);
 int add_dielectric(Scene& scene, const Spectrum& eta);
 int add_conductor(Scene& scene, const Spectrum& eta, const Spectrum& k);
 
+/// Puts a film on a material, and returns the material.
+int with_film(Scene& scene, int material, const std::vector<FilmLayer>& layers);
+
 /// A uniform environment of radiance 1 times the spectrum.
 Light environment(const Spectrum& emission);
 
@@ -37,7 +40,8 @@ int add_area_light(Scene& scene, const Spectrum& emission, double radiance);
 void add_parallelogram(Scene& scene, const V3d& corner, const V3d& edge1, const V3d& edge2, int material,
                        int area_light = -1);
 void add_box(Scene& scene, const V3d& low, const V3d& high, bool inwards, int material, int area_light = -1);
-void add_sphere(Scene& scene, double radius, int subdivisions, bool vertex_normals, int material);
+void add_sphere(Scene& scene, double radius, int subdivisions, bool vertex_normals, int material,
+                const V3d& centre = V3d(0.0));
 
 /// The horizontal square |x|, |y| <= half_side at height z, facing up or down.
 void add_horizontal_square(Scene& scene, double half_side, double z, bool up, int material);

@@ -50,11 +50,6 @@ float largest_radius_floor(const SceneConstants& c) {
     return std::max(SMALLEST_RELATIVE_RADIUS * (centre + c.radius), SMALLEST_RADIUS);
 }
 
-/// A count of two uints in a buffer of such.
-std::uint64_t count_at(const std::vector<std::uint32_t>& counts, std::size_t kind) {
-    return std::uint64_t{counts[2 * kind]} | std::uint64_t{counts[2 * kind + 1]} << 32U;
-}
-
 std::size_t rays_to_record(const RenderOptions& options) {
     if (!options.record_rays)
         return 0;
@@ -383,12 +378,7 @@ FilmImage Renderer::film() const {
 }
 
 NonFiniteCounts Renderer::non_finite(const std::vector<FilmPixel>& film) const {
-    const std::vector<std::uint32_t> counts = non_finite_.read(device_);
-    NonFiniteCounts found{count_at(counts, NON_FINITE_EYE), count_at(counts, NON_FINITE_PHOTON),
-                          count_at(counts, NON_FINITE_GATHER), 0};
-    for (const FilmPixel& pixel : film)
-        found.film += pixel.rejected;
-    return found;
+    return non_finite_counts(non_finite_.read(device_), film);
 }
 
 std::vector<Photon> Renderer::photons() const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "shared_types.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -29,6 +31,9 @@ struct NonFiniteCounts {
 
     std::uint64_t total() const { return eye + photon + gather + film; }
 };
+
+/// From the buffer in which the kernels count (low and high half of each count) and the pixels' own counts.
+NonFiniteCounts non_finite_counts(const std::vector<std::uint32_t>& counted, const std::vector<FilmPixel>& film);
 
 /// "eye 1, photon 0, gather 0, film 0".
 std::string describe(const NonFiniteCounts& counts);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
+#include <utility>
 
 namespace tristim::selftest {
 
@@ -27,6 +30,16 @@ std::size_t inputs(const Setting& setting, std::size_t count, std::size_t least)
 
 ::cl::Program build(const Setting& setting, const std::string& file, const Macros& macros) {
     return build_program(setting.device, "selftest/" + file, macros, {setting.fast_math, {}});
+}
+
+Programs built_once(Programs build_program) {
+    auto built = std::make_shared<std::map<std::pair<cl_context, bool>, ::cl::Program>>();
+    return [=](const Setting& setting) {
+        const auto [at, is_new] = built->try_emplace({setting.device.context(), setting.fast_math});
+        if (is_new)
+            at->second = build_program(setting);
+        return at->second;
+    };
 }
 
 std::vector<Case> all_cases() {

@@ -52,6 +52,12 @@ std::size_t inputs(const Setting& setting, std::size_t count, std::size_t least 
 /// Builds kernels/selftest/FILE for the setting's device and arithmetic.
 ::cl::Program build(const Setting& setting, const std::string& file, const Macros& macros = {});
 
+/// Gives the program that cases share, for a setting's device and arithmetic; tests give one with a fault.
+using Programs = std::function<::cl::Program(const Setting&)>;
+
+/// The same programs, each built when it is first asked for and kept as long as the result.
+Programs built_once(Programs build_program);
+
 /// Every case, group by group; each group has a file of its own.
 std::vector<Case> all_cases();
 std::vector<Case> film_cases();

@@ -109,15 +109,17 @@ cl_float4 direction_of(const V3d& d) {
 }
 
 Measurement count_leaving(const GeometryKernels& kernels, const Setting& setting, const char* parameter,
-                          const std::vector<double>& values, const std::function<LeavingCase(double)>& make) {
+                          const std::vector<double>& values, double LeavingCase::*varied) {
     Measurement found;
     Random random(6);
     for (const double value : values) {
+        LeavingCase c;
+        c.*varied = value;
         const std::size_t tilts = 8;
         const std::size_t rays = inputs(setting, rays_per_value / tilts, 16);
         std::size_t wrong = 0;
         for (std::size_t tilt = 0; tilt < tilts; ++tilt)
-            wrong += leaving_errors(kernels, make(value), rays, random);
+            wrong += leaving_errors(kernels, c, rays, random);
         add_count(wrong, rays * tilts, value, fmt::format("{} {:.3g}", parameter, value), found);
     }
     return found;
@@ -201,35 +203,19 @@ std::size_t leaving_errors(const GeometryKernels& kernels, const LeavingCase& c,
 }
 
 Measurement leaving_by_scale(const GeometryKernels& kernels, const Setting& setting) {
-    return count_leaving(kernels, setting, "scale", powers_of_ten(-6, 6), [](double scale) {
-        LeavingCase c;
-        c.scale = scale;
-        return c;
-    });
+    return count_leaving(kernels, setting, "scale", powers_of_ten(-6, 6), &LeavingCase::scale);
 }
 
 Measurement leaving_by_distance(const GeometryKernels& kernels, const Setting& setting) {
-    return count_leaving(kernels, setting, "distance", powers_of_ten(-1, 4), [](double distance) {
-        LeavingCase c;
-        c.distance = distance;
-        return c;
-    });
+    return count_leaving(kernels, setting, "distance", powers_of_ten(-1, 4), &LeavingCase::distance);
 }
 
 Measurement leaving_by_cosine(const GeometryKernels& kernels, const Setting& setting) {
-    return count_leaving(kernels, setting, "cosine", powers_of_ten(-7, 0), [](double cosine) {
-        LeavingCase c;
-        c.cosine = cosine;
-        return c;
-    });
+    return count_leaving(kernels, setting, "cosine", powers_of_ten(-7, 0), &LeavingCase::cosine);
 }
 
 Measurement leaving_by_aspect(const GeometryKernels& kernels, const Setting& setting) {
-    return count_leaving(kernels, setting, "aspect ratio", powers_of_ten(0, 6), [](double aspect) {
-        LeavingCase c;
-        c.aspect = aspect;
-        return c;
-    });
+    return count_leaving(kernels, setting, "aspect ratio", powers_of_ten(0, 6), &LeavingCase::aspect);
 }
 
 Measurement leaving_meshes(const GeometryKernels& kernels, const Setting& setting) {

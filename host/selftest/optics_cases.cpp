@@ -3,8 +3,6 @@
 #include "opencl/buffer.h"
 
 #include <cmath>
-#include <map>
-#include <memory>
 #include <numbers>
 
 namespace tristim::selftest {
@@ -79,21 +77,6 @@ std::vector<float> relative_indices() {
 
 } // namespace optics
 
-namespace {
-
-/// Builds a program for each arithmetic once, for all the cases that hold the result.
-Cores built_once(const std::string& file, const Macros& macros) {
-    auto built = std::make_shared<std::map<std::pair<cl_context, bool>, ::cl::Program>>();
-    return [=](const Setting& setting) {
-        const auto [at, is_new] = built->try_emplace({setting.device.context(), setting.fast_math});
-        if (is_new)
-            at->second = build(setting, file, macros);
-        return at->second;
-    };
-}
-
-} // namespace
-
 Macros optics_macros() {
     return {{"LANES", "4"}};
 }
@@ -104,10 +87,12 @@ Macros path_macros() {
 }
 
 std::vector<Case> optics_cases() {
-    const Cores cores = built_once("optics.cl", optics_macros());
+    const Programs cores =
+        built_once([](const Setting& setting) { return build(setting, "optics.cl", optics_macros()); });
+    const Programs paths =
+        built_once([](const Setting& setting) { return build(setting, "optics_paths.cl", path_macros()); });
     std::vector<Case> all;
-    for (const auto& part : {fresnel_cases(cores), direction_cases(cores), microfacet_cases(cores),
-                             path_cases(built_once("optics_paths.cl", path_macros()))})
+    for (const auto& part : {fresnel_cases(cores), direction_cases(cores), microfacet_cases(cores), path_cases(paths)})
         all.insert(all.end(), part.begin(), part.end());
     return all;
 }

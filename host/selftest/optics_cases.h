@@ -9,13 +9,11 @@
 
 namespace tristim::selftest {
 
-/// Gives the program of kernels/selftest/optics.cl, or of optics_paths.cl, for a setting.
-using Cores = std::function<::cl::Program(const Setting&)>;
-
-std::vector<Case> fresnel_cases(const Cores& cores);
-std::vector<Case> direction_cases(const Cores& cores);
-std::vector<Case> microfacet_cases(const Cores& cores);
-std::vector<Case> path_cases(const Cores& paths);
+/// Of kernels/selftest/optics.cl, the last of optics_paths.cl.
+std::vector<Case> fresnel_cases(const Programs& cores);
+std::vector<Case> direction_cases(const Programs& cores);
+std::vector<Case> microfacet_cases(const Programs& cores);
+std::vector<Case> path_cases(const Programs& paths);
 
 /// The macros of kernels/selftest/optics.cl and optics_paths.cl.
 Macros optics_macros();

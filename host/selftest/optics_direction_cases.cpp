@@ -227,7 +227,7 @@ Measurement square_maps(const Setting& setting, const ::cl::Program& program) {
 
 } // namespace
 
-std::vector<Case> direction_cases(const Cores& cores) {
+std::vector<Case> direction_cases(const Programs& cores) {
     const auto with = [&cores](Measurement (*measure)(const Setting&, const ::cl::Program&)) {
         return [cores, measure](const Setting& setting) { return measure(setting, cores(setting)); };
     };

@@ -170,7 +170,7 @@ Measurement conductors(const Setting& setting, const ::cl::Program& program) {
 
 } // namespace
 
-std::vector<Case> fresnel_cases(const Cores& cores) {
+std::vector<Case> fresnel_cases(const Programs& cores) {
     const auto with = [&cores](Measurement (*measure)(const Setting&, const ::cl::Program&)) {
         return [cores, measure](const Setting& setting) { return measure(setting, cores(setting)); };
     };

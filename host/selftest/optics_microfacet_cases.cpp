@@ -187,7 +187,7 @@ Measurement matched_refraction(const Setting& setting, const ::cl::Program& prog
 
 } // namespace
 
-std::vector<Case> microfacet_cases(const Cores& cores) {
+std::vector<Case> microfacet_cases(const Programs& cores) {
     const auto with = [&cores](Measurement (*measure)(const Setting&, const ::cl::Program&)) {
         return [cores, measure](const Setting& setting) { return measure(setting, cores(setting)); };
     };

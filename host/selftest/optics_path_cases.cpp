@@ -277,7 +277,7 @@ Measurement rough_paths(const Setting& setting, const ::cl::Program& program) {
 
 } // namespace
 
-std::vector<Case> path_cases(const Cores& paths) {
+std::vector<Case> path_cases(const Programs& paths) {
     const auto with = [&paths](Measurement (*measure)(const Setting&, const ::cl::Program&)) {
         return [paths, measure](const Setting& setting) { return measure(setting, paths(setting)); };
     };

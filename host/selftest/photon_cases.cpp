@@ -233,16 +233,6 @@ Measurement density(const Setting& setting, const ::cl::Program& cores) {
 
 } // namespace photon
 
-Programs built_once(std::function<::cl::Program(const Setting&)> build_program) {
-    auto built = std::make_shared<std::map<std::pair<cl_context, bool>, ::cl::Program>>();
-    return [=](const Setting& setting) {
-        const auto [at, is_new] = built->try_emplace({setting.device.context(), setting.fast_math});
-        if (is_new)
-            at->second = build_program(setting);
-        return at->second;
-    };
-}
-
 std::vector<Case> photon_cases() {
     using namespace photon;
     const auto on = [](const Programs& programs, Measurement (*measure)(const Setting&, const ::cl::Program&)) {

@@ -4,10 +4,6 @@
 
 namespace tristim::selftest {
 
-/// Builds a program for each device and arithmetic once, for all the cases that share it.
-using Programs = std::function<::cl::Program(const Setting&)>;
-Programs built_once(std::function<::cl::Program(const Setting&)> build_program);
-
 /// What the cases of two groups measure, on programs that may be given: a test tries them on kernels with a fault.
 namespace photon {
 

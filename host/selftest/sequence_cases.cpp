@@ -30,7 +30,7 @@ void enqueue(const Device& device, ::cl::Kernel& kernel, ::cl_uint argument, std
     device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(items));
 }
 
-Measurement positions(const Setting& setting, const SequenceCores& cores) {
+Measurement positions(const Setting& setting, const Programs& cores) {
     const ::cl::Program program = cores(setting);
     const Device& device = setting.device;
     Measurement found;
@@ -91,7 +91,7 @@ std::vector<LongRun> pixel_runs() {
 }
 
 template <typename Dependence, typename Parameter>
-Measurement dependences(const Setting& setting, const SequenceCores& cores, std::vector<LongRun> runs,
+Measurement dependences(const Setting& setting, const Programs& cores, std::vector<LongRun> runs,
                         Dependence&& dependence, Parameter&& parameter) {
     const ::cl::Program program = cores(setting);
     runs.resize(std::min(runs.size(), inputs(setting, runs.size())));
@@ -202,7 +202,7 @@ double eye_dependence(const LongRun& /*run*/, const std::vector<PassNumbers>& nu
     return largest;
 }
 
-std::vector<Case> sequence_cases(const SequenceCores& cores) {
+std::vector<Case> sequence_cases(const Programs& cores) {
     return {{"sequence", "places of wavelengths, passes to 2^32", "log2 of the pass", "place, in 2^-32", 0.0, 0.0,
              [=](const Setting& setting) { return positions(setting, cores); }},
             {"sequence", "wavelengths against photons over passes", "photon paths per pass",
@@ -219,7 +219,7 @@ std::vector<Case> sequence_cases(const SequenceCores& cores) {
 }
 
 std::vector<Case> sequence_cases() {
-    return sequence_cases([](const Setting& setting) { return build(setting, "sequence.cl"); });
+    return sequence_cases(built_once([](const Setting& setting) { return build(setting, "sequence.cl"); }));
 }
 
 } // namespace tristim::selftest

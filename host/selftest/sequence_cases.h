@@ -3,17 +3,14 @@
 #include "selftest/case.h"
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace tristim::selftest {
 
-/// Gives the program of kernels/selftest/sequence.cl for a setting.
-using SequenceCores = std::function<::cl::Program(const Setting&)>;
-
-/// The sequence cases for a program of the caller's: so that tests can see a case catch a fault.
-std::vector<Case> sequence_cases(const SequenceCores& cores);
+/// The sequence cases for a program of kernels/selftest/sequence.cl that is the caller's: so that tests can see a case
+/// catch a fault.
+std::vector<Case> sequence_cases(const Programs& cores);
 
 /// Pairs of numbers in [0, 1), counted in cells over the unit square.
 class PairCounts {

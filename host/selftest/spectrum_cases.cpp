@@ -112,7 +112,7 @@ class DeviceSampler {
 /// Calls function(sampler on the device, kind, light) for every sampler with a table, or for all others; those that
 /// heed the light are told of each of the lights.
 template <typename Function>
-void for_each_sampler(const Setting& setting, const SpectrumCores& cores, bool tables, Function&& function) {
+void for_each_sampler(const Setting& setting, const Programs& cores, bool tables, Function&& function) {
     const ::cl::Program program = cores(setting);
     for (const MethodKind& kind : method_kinds()) {
         if (!kind.unbiased || kind.kind == Method::Kind::Spectral || has_table(kind.kind) != tables)
@@ -150,7 +150,7 @@ std::vector<std::uint32_t> probing_positions(std::size_t random_ones) {
 }
 
 /// How far wavelengths are from those of the positions, which may be off by `slack`; or go back where positions go on.
-Measurement inverse_cdfs(const Setting& setting, const SpectrumCores& cores, bool tables, double slack) {
+Measurement inverse_cdfs(const Setting& setting, const Programs& cores, bool tables, double slack) {
     Measurement found;
     const std::vector<std::uint32_t> probes = probing_positions(inputs(setting, 400));
     for_each_sampler(
@@ -260,7 +260,7 @@ std::vector<Xyz> line_energies(const DeviceSampler& sampler, const std::vector<s
     return energies;
 }
 
-Measurement lines(const Setting& setting, const SpectrumCores& cores, bool tables) {
+Measurement lines(const Setting& setting, const Programs& cores, bool tables) {
     const std::size_t count = std::min(inputs(setting, lambda_bins, 5), std::size_t{lambda_bins});
     std::vector<std::size_t> bins;
     for (std::size_t i = 0; i < count; ++i)
@@ -289,7 +289,7 @@ Measurement lines(const Setting& setting, const SpectrumCores& cores, bool table
 
 /// The values that emission and smooth data have at knots, between them and at the ends of the table, over the larger
 /// of the means that they lie between.
-Measurement table_values(const Setting& setting, const SpectrumCores& cores) {
+Measurement table_values(const Setting& setting, const Programs& cores) {
     std::vector<float> lambdas;
     const std::size_t step = std::max(std::size_t{1}, 2 * lambda_bins / inputs(setting, 2 * lambda_bins, 20));
     for (std::size_t half = 0; half <= 2 * lambda_bins; half += step) {
@@ -340,7 +340,7 @@ Macros spectrum_macros() {
     return method_macros({Method::Kind::Uniform, wavelengths}, false);
 }
 
-std::vector<Case> spectrum_cases(const SpectrumCores& cores) {
+std::vector<Case> spectrum_cases(const Programs& cores) {
     // A CDF has 2^31 steps, of which a bin too dark for one still gets one; there are six such bins in a row at most.
     constexpr double table_slack = 8.0 * 0x1p-31;
     constexpr double float_slack = 0x1p-24;
@@ -363,7 +363,8 @@ std::vector<Case> spectrum_cases(const SpectrumCores& cores) {
 }
 
 std::vector<Case> spectrum_cases() {
-    return spectrum_cases([](const Setting& setting) { return build(setting, "spectrum.cl", spectrum_macros()); });
+    return spectrum_cases(
+        built_once([](const Setting& setting) { return build(setting, "spectrum.cl", spectrum_macros()); }));
 }
 
 } // namespace tristim::selftest

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/error.h"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -27,5 +29,15 @@ class Scratch {
 
 /// Ends the run as a failure unless `condition` holds. `what` says what ought to hold.
 void require(bool condition, const char* what);
+
+/// Calls a function that may throw an Error with a sentence, and nothing else.
+template <typename Function>
+void expect_value_or_error(Function&& function) {
+    try {
+        function();
+    } catch (const Error& error) {
+        require(*error.what() != '\0', "an error says something");
+    }
+}
 
 } // namespace tristim::fuzz

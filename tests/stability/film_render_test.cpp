@@ -13,17 +13,6 @@ FilmLayer layer(double thickness, double eta, double k = 0.0) {
     return {thickness, Spectrum::constant(eta), Spectrum::constant(k)};
 }
 
-int with_film(Scene& scene, int material, const std::vector<FilmLayer>& layers) {
-    scene.materials[static_cast<std::size_t>(material)].film.layers = layers;
-    return material;
-}
-
-void add_sphere_at(Scene& scene, const V3d& centre, double radius, int material) {
-    add_sphere(scene, radius, 2, false, material);
-    for (V3d& position : scene.shapes.back().mesh.positions)
-        position += centre;
-}
-
 /// A glass and a metal sphere over a white floor, under a lamp.
 Scene spheres(const std::vector<FilmLayer>& on_glass, const std::vector<FilmLayer>& on_metal) {
     Scene scene;
@@ -33,8 +22,8 @@ Scene spheres(const std::vector<FilmLayer>& on_glass, const std::vector<FilmLaye
     const int glass = with_film(scene, add_dielectric(scene, Spectrum::constant(1.5)), on_glass);
     const int metal = with_film(
         scene, add_conductor(scene, Spectrum::named("metal-Au-eta"), Spectrum::named("metal-Au-k")), on_metal);
-    add_sphere_at(scene, {-0.5, 0.0, 0.6}, 0.45, glass);
-    add_sphere_at(scene, {0.5, 0.0, 0.6}, 0.45, metal);
+    add_sphere(scene, 0.45, 2, false, glass, {-0.5, 0.0, 0.6});
+    add_sphere(scene, 0.45, 2, false, metal, {0.5, 0.0, 0.6});
     add_horizontal_square(scene, 2.0, 0.0, true, add_diffuse(scene, Spectrum::constant(0.8)));
     return scene;
 }
@@ -118,7 +107,7 @@ Scene extremes(bool absorbing) {
         with_film(scene, metal(100.0, 100.0), {layer(50.0, 0.05, k), layer(1e6, 1.3)}),
     };
     for (std::size_t i = 0; i < materials.size(); ++i)
-        add_sphere_at(scene, {0.5 * static_cast<double>(i) - 1.75, 0.0, 0.4}, 0.24, materials[i]);
+        add_sphere(scene, 0.24, 2, false, materials[i], {0.5 * static_cast<double>(i) - 1.75, 0.0, 0.4});
     const int floor = add_diffuse(scene, Spectrum::constant(0.9));
     add_horizontal_square(scene, 2.5, 0.0, true, add_textured_film(scene, floor, 1e6, absorbing ? 1e-5 : 0.0));
     return scene;

@@ -21,9 +21,7 @@ struct BallOverPlain {
         scene.path = "ball over a plain";
         scene.camera = look_at({3.0, -5.0, 3.5}, {0.3, 0.2, 0.8}, {0, 0, 1}, 40.0);
         const int grey = add_diffuse(scene, Spectrum::constant(0.5));
-        add_sphere(scene, 1.0, 8, false, grey);
-        for (V3d& position : scene.shapes.back().mesh.positions)
-            position += centre;
+        add_sphere(scene, 1.0, 8, false, grey, centre);
         const V3d along = plain_normal.cross(V3d(0.3, 1.0, 0.0)).normalized();
         const V3d across = plain_normal.cross(along);
         Shape plain;

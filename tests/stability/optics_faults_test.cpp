@@ -55,7 +55,7 @@ TEST_P(OpticsFault, IsCaught) {
     const auto at = text.find(fault.original);
     ASSERT_NE(at, std::string::npos) << "the kernels no longer say: " << fault.original;
     const auto caught = [&](const std::string& source) {
-        const Cores cores = [&](const Setting& setting) {
+        const Programs cores = [&](const Setting& setting) {
             return build_program_from_text(setting.device, "optics-fault.cl", source,
                                            of_paths ? path_macros() : optics_macros(), {setting.fast_math, {}});
         };
