@@ -162,6 +162,8 @@ INSTANTIATE_TEST_SUITE_P(
     , FilmError,
     testing::Values(
         BadMaterial{"NegativeThickness", layer("-1"), "film thickness -1 nm"},
+        BadMaterial{"TooThick", layer("2e6"),
+                    "film thickness 2000000 nm in \"filmthickness\" must be from 0 to 1000000 nm"},
         BadMaterial{"SecondThicknessNegative", layer("[10 -2]", "\"float filmeta\" [1.4 1.5]"), "film thickness -2 nm"},
         BadMaterial{"NanThickness", layer("nan"), "\"nan\" in the parameter \"filmthickness\""},
         BadMaterial{"InfiniteThickness", layer("[ inf ]"), "\"inf\" in the parameter \"filmthickness\""},

@@ -71,7 +71,8 @@ void add_render_settings(CLI::App& command, RenderArguments& a) {
     command.add_option("--max-depth", a.max_depth, "Vertices after which a path ends [scene, else 16]");
     command
         .add_option("--photon-roughness", a.photon_roughness,
-                    "GGX roughness (alpha) from which on surfaces take photons; camera paths go on at smoother ones")
+                    "GGX roughness (alpha) from which on surfaces take photons; camera paths go on at smoother ones. "
+                    "Glass of an index below 1.5 counts as smoother")
         ->type_name("ALPHA")
         ->capture_default_str();
     command

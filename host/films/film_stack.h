@@ -1,14 +1,12 @@
 #pragma once
 
+#include "scene/film_limits.h"
 #include "spectra/complex_index.h"
 
 #include <string>
 #include <vector>
 
 namespace tristim {
-
-/// The thickest layer that a stack may have, in nm: of much thicker ones no lamp's light is coherent.
-inline constexpr double max_layer_thickness_nm = 1e6;
 
 /// A medium at one end of a stack.
 struct StackMedium {

@@ -27,7 +27,12 @@ void add_roughness(const Material& material, Effects& effects) {
 } // namespace
 
 bool takes_photons(const Material& material, double photon_roughness) {
-    return std::max(material.alpha_u, material.alpha_v) >= photon_roughness;
+    double narrowing = 1.0;
+    if (material.kind == Material::Kind::Dielectric) {
+        for (const double eta : material.eta.bins())
+            narrowing = std::min(narrowing, 2.0 * (std::max(eta, 1.0 / eta) - 1.0));
+    }
+    return narrowing * std::max(material.alpha_u, material.alpha_v) >= photon_roughness;
 }
 
 bool absorbs(const Film& film) {

@@ -35,7 +35,9 @@ struct Effects {
     bool area_light = false;
 };
 
-/// Whether the larger of the surface's α reaches the border.
+/// Whether the larger of the surface's α reaches the border. A facet that leans by an angle turns refracted light by
+/// about |eta - 1| times that, so the lobe of matched indices is narrow however rough the surface is: below 1.5 (or
+/// above 1/1.5) a dielectric's α counts for less, in proportion to |eta - 1| where that is least in the spectrum.
 bool takes_photons(const Material& material, double photon_roughness);
 
 /// Whether a layer has k > 0.

@@ -252,6 +252,28 @@ double geometric_power(const SceneLight& light, double scene_radius) {
     }
 }
 
+/// Shares out the numbers that kernels draw, the multiples of 2^-24 (unit_float): one to each light that emits, so that
+/// none is missed however faint beside the others, and the rest by power. The probabilities are those of the shares,
+/// exactly.
+void choose_by_power(const std::vector<double>& powers, double total, FlatScene& flat) {
+    constexpr double numbers = 0x1p24;
+    const auto emitting =
+        static_cast<double>(std::count_if(powers.begin(), powers.end(), [](double p) { return p > 0.0; }));
+    if (emitting > 0.5 * numbers)
+        fail("the scene has {:.0f} lights (an area light is one for each triangle); at most {:.0f} can be told apart",
+             emitting, 0.5 * numbers);
+    double before = 0.0, sum = 0.0, lights = 0.0;
+    flat.light_cdf.push_back(0.0F);
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+        sum += powers[i];
+        lights += powers[i] > 0.0 ? 1.0 : 0.0;
+        const double end = lights + std::round((numbers - emitting) * std::min(sum / total, 1.0));
+        flat.lights[i].probability = static_cast<float>((end - before) / numbers);
+        flat.light_cdf.push_back(static_cast<float>(end / numbers));
+        before = end;
+    }
+}
+
 /// Chooses lights in proportion to the Y of their power, and sums up what they emit. rows[i] is the spectrum of
 /// scene.lights[i].
 void weigh_lights(const Scene& scene, const std::vector<int>& rows, FlatScene& flat) {
@@ -274,14 +296,7 @@ void weigh_lights(const Scene& scene, const std::vector<int>& rows, FlatScene& f
     }
     if (!(total > 0.0) || !std::isfinite(total))
         fail("{}: the lights emit nothing that is visible", scene.path);
-    flat.light_cdf.push_back(0.0F);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < powers.size(); ++i) {
-        sum += powers[i];
-        flat.lights[i].probability = static_cast<float>(powers[i] / total);
-        flat.light_cdf.push_back(static_cast<float>(sum / total));
-    }
-    flat.light_cdf.back() = 1.0F;
+    choose_by_power(powers, total, flat);
 }
 
 } // namespace

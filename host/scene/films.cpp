@@ -1,6 +1,7 @@
 #include "scene/films.h"
 
 #include "base/parse_number.h"
+#include "scene/film_limits.h"
 #include "spectra/complex_index.h"
 
 #include <algorithm>
@@ -21,18 +22,22 @@ std::vector<double> thicknesses(ParameterList& parameters, TextureTable& texture
         const FloatTexture& found = textures.find(texture_name, where);
         values.push_back(found.value);
         if (found.pattern) {
-            const double low = value_range(*found.pattern)[0];
-            if (low < 0.0)
-                fail_at(where, "the film thickness cannot be the texture \"{}\", which is {} somewhere", texture_name,
-                        low);
+            for (const double value : value_range(*found.pattern)) {
+                if (value < 0.0 || value > max_layer_thickness_nm)
+                    fail_at(where,
+                            "the film thickness cannot be the texture \"{}\", which is {} somewhere: films are 0 to {} "
+                            "nm thick",
+                            texture_name, value, max_layer_thickness_nm);
+            }
             texture = textures.use(found);
         }
     }
     if (values.empty())
         fail_at(where, "\"{}\" of {} holds no thickness", name, parameters.owner());
     for (const double value : values) {
-        if (value < 0.0)
-            fail_at(where, "the film thickness {} nm in \"{}\" must be at least 0", value, name);
+        if (value < 0.0 || value > max_layer_thickness_nm)
+            fail_at(where, "the film thickness {} nm in \"{}\" must be from 0 to {} nm", value, name,
+                    max_layer_thickness_nm);
     }
     return values;
 }
