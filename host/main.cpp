@@ -6,6 +6,7 @@
 #include "commands/bench_wavelengths.h"
 #include "commands/compare.h"
 #include "commands/devices.h"
+#include "commands/effects.h"
 #include "commands/film.h"
 #include "commands/methods.h"
 #include "commands/reference.h"
@@ -51,6 +52,7 @@ int run(int argc, char** argv) {
     app.get_formatter()->column_width(36);
     tristim::add_render_command(app);
     tristim::add_reference_command(app);
+    tristim::add_effects_command(app);
     tristim::add_methods_command(app);
     tristim::add_devices_command(app);
     tristim::add_selftest_command(app);

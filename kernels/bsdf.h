@@ -14,7 +14,12 @@
 
 // Whether a surface scatters by chance into directions that light can be sampled for, and yet passes camera paths on.
 bool is_nearly_specular(const global SurfaceMaterial* material) {
-    return HAS_NEARLY_SPECULAR && material->alpha_u > 0.0f && !material->takes_photons;
+    return HAS_NEARLY_SPECULAR && is_rough(material) && !material->takes_photons;
+}
+
+// Whether a rough surface takes photons.
+bool takes_photons(const global SurfaceMaterial* material) {
+    return HAS_NEARLY_SPECULAR ? HAS_ROUGH_PHOTONS && material->takes_photons : HAS_ROUGH_PHOTONS;
 }
 
 // A path that meets a dispersive surface with every wavelength goes on with the one of `slot`.
@@ -35,15 +40,15 @@ bool scatter(const Scene* scene, const global SurfaceMaterial* material, const I
     *pdf = 0.0f;
     meet_dispersion(material, slot, weight);
 #if HAS_FILM || HAS_ROUGH
-    if (material->film_layers > 0 || material->alpha_u > 0.0f)
+    if (film_layers_on(material) > 0 || is_rough(material))
         return scatter_interface(scene, material, it, direction, u, radiance, weight, pdf);
 #endif
 #if HAS_DIELECTRIC
-    if (material->kind == MATERIAL_DIELECTRIC)
+    if (is_dielectric(material))
         *direction = scatter_dielectric(scene, material, it, *direction, u.x, radiance, weight);
 #endif
 #if HAS_CONDUCTOR
-    if (material->kind == MATERIAL_CONDUCTOR)
+    if (is_conductor(material))
         *direction = scatter_conductor(scene, material, it, *direction, weight);
 #endif
     return true;

@@ -1,7 +1,7 @@
-// Ray traversal of the eight-wide BVH (layout in shared_types.h), one ray per work-item, eight boxes or eight triangles
-// at a time. Watertight: triangles by Woop, Benthin & Wald 2013 ("Watertight Ray/Triangle Intersection"), boxes widened
-// by the builder in proportion to the triangles' coordinates and here in proportion to the ray's origin, so that
-// rounding never hides a box whose triangle is hit. Both sides of a triangle are hit.
+// Ray traversal of the BVH (layout in shared_types.h), one ray per work-item, BVH_WIDTH boxes or triangles at a time.
+// Watertight: triangles by Woop, Benthin & Wald 2013 ("Watertight Ray/Triangle Intersection"), boxes widened by the
+// builder in proportion to the triangles' coordinates and here in proportion to the ray's origin, so that rounding never
+// hides a box whose triangle is hit. Both sides of a triangle are hit.
 //
 // t is in units of |direction|, which should be about 1: components below BVH_SMALLEST_DIRECTION are raised to it, so
 // that no infinity or NaN appears in the slab test.
@@ -9,6 +9,7 @@
 #define TRISTIM_BVH_H
 
 #include "config.h"
+#include "multiply_add.h"
 #include "shared_types.h"
 
 #define BVH_SMALLEST_DIRECTION 1e-18f
@@ -22,6 +23,13 @@
 
 // By how much of the largest coordinate a ray's origin is moved off the surface that it leaves: see offset_from_triangle.
 #define BVH_LEAVING (32.0f * BVH_ROUNDING)
+
+// Names of vector types and built-in functions of BVH_WIDTH lanes: BVH_LANES(vload) is vload8.
+#define BVH_JOIN(name, width) name##width
+#define BVH_JOIN_EXPANDED(name, width) BVH_JOIN(name, width)
+#define BVH_LANES(name) BVH_JOIN_EXPANDED(name, BVH_WIDTH)
+typedef BVH_LANES(float) BvhFloats;
+typedef BVH_LANES(int) BvhInts;
 
 // Where a ray hit: point = (1-u-v) v0 + u v1 + v v2. triangle = -1 if it hit nothing.
 typedef struct Hit {
@@ -53,9 +61,9 @@ BvhRay bvh_prepare_ray(float3 origin, float3 direction) {
     const float3 widening = copysign((float3)(BVH_PADDING * max(max(reach.x, reach.y), reach.z)), direction);
     ray.entry = -(origin + widening) * ray.inverse;
     ray.exit = -(origin - widening) * ray.inverse;
-    ray.entry_row.x = signbit(direction.x) ? 24 : 0;
-    ray.entry_row.y = signbit(direction.y) ? 32 : 8;
-    ray.entry_row.z = signbit(direction.z) ? 40 : 16;
+    ray.entry_row.x = BVH_WIDTH * (signbit(direction.x) ? BVH_HIGH : BVH_LOW);
+    ray.entry_row.y = BVH_WIDTH * (signbit(direction.y) ? BVH_HIGH + 1 : BVH_LOW + 1);
+    ray.entry_row.z = BVH_WIDTH * (signbit(direction.z) ? BVH_HIGH + 2 : BVH_LOW + 2);
 
     ray.axis.z = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     ray.axis.x = ray.axis.z == 2 ? 0 : ray.axis.z + 1;
@@ -69,8 +77,14 @@ BvhRay bvh_prepare_ray(float3 origin, float3 direction) {
 }
 
 // One byte of each lane's comparison result, 0 or 1.
-ulong bvh_lane_mask(int8 condition) {
+ulong bvh_lane_mask(BvhInts condition) {
+#if BVH_WIDTH == 8
     return as_ulong(convert_char8(condition)) & 0x0101010101010101UL;
+#elif BVH_WIDTH == 4
+    return as_uint(convert_char4(condition)) & 0x01010101u;
+#else
+    return as_ushort(convert_char2(condition)) & 0x0101u;
+#endif
 }
 
 // The lowest lane of a mask that is not zero.
@@ -79,25 +93,27 @@ int bvh_first_lane(ulong mask) {
 }
 
 // The children of a node that the ray meets before t_max; *entry_t is where it enters each.
-ulong bvh_intersect_boxes(const global BvhNode* node, const BvhRay* ray, float t_max, float8* entry_t) {
+ulong bvh_intersect_boxes(const global BvhNode* node, const BvhRay* ray, float t_max, BvhFloats* entry_t) {
     const global float* rows = (const global float*)node;
-    const float8 entry_x = fma(vload8(0, rows + ray->entry_row.x), (float8)(ray->inverse.x), (float8)(ray->entry.x));
-    const float8 entry_y = fma(vload8(0, rows + ray->entry_row.y), (float8)(ray->inverse.y), (float8)(ray->entry.y));
-    const float8 entry_z = fma(vload8(0, rows + ray->entry_row.z), (float8)(ray->inverse.z), (float8)(ray->entry.z));
-    const float8 exit_x =
-        fma(vload8(0, rows + (24 - ray->entry_row.x)), (float8)(ray->inverse.x), (float8)(ray->exit.x));
-    const float8 exit_y =
-        fma(vload8(0, rows + (40 - ray->entry_row.y)), (float8)(ray->inverse.y), (float8)(ray->exit.y));
-    const float8 exit_z =
-        fma(vload8(0, rows + (56 - ray->entry_row.z)), (float8)(ray->inverse.z), (float8)(ray->exit.z));
-    *entry_t = max(max(entry_x, entry_y), max(entry_z, (float8)(0.0f)));
-    const float8 exit_t = min(min(exit_x, exit_y), min(exit_z, (float8)(t_max)));
+    const BvhFloats inverse_x = ray->inverse.x, inverse_y = ray->inverse.y, inverse_z = ray->inverse.z;
+    const BvhFloats entry_x = multiply_add(BVH_LANES(vload)(0, rows + ray->entry_row.x), inverse_x, (BvhFloats)(ray->entry.x));
+    const BvhFloats entry_y = multiply_add(BVH_LANES(vload)(0, rows + ray->entry_row.y), inverse_y, (BvhFloats)(ray->entry.y));
+    const BvhFloats entry_z = multiply_add(BVH_LANES(vload)(0, rows + ray->entry_row.z), inverse_z, (BvhFloats)(ray->entry.z));
+    const int low_and_high = BVH_WIDTH * (BVH_LOW + BVH_HIGH); // less an axis's one row: its other
+    const BvhFloats exit_x =
+        multiply_add(BVH_LANES(vload)(0, rows + (low_and_high - ray->entry_row.x)), inverse_x, (BvhFloats)(ray->exit.x));
+    const BvhFloats exit_y = multiply_add(BVH_LANES(vload)(0, rows + (low_and_high + 2 * BVH_WIDTH - ray->entry_row.y)), inverse_y,
+                                 (BvhFloats)(ray->exit.y));
+    const BvhFloats exit_z = multiply_add(BVH_LANES(vload)(0, rows + (low_and_high + 4 * BVH_WIDTH - ray->entry_row.z)), inverse_z,
+                                 (BvhFloats)(ray->exit.z));
+    *entry_t = max(max(entry_x, entry_y), max(entry_z, (BvhFloats)(0.0f)));
+    const BvhFloats exit_t = min(min(exit_x, exit_y), min(exit_z, (BvhFloats)(t_max)));
     return bvh_lane_mask(*entry_t <= exit_t);
 }
 
-// Eight triangles seen along the ray, edge functions (U, V, W) made non-negative where the triangle is hit.
+// A leaf's triangles seen along the ray, edge functions (U, V, W) made non-negative where the triangle is hit.
 typedef struct BvhEdges {
-    float8 v, w, determinant, scaled_t;
+    BvhFloats v, w, determinant, scaled_t;
     ulong hits;
 } BvhEdges;
 
@@ -106,43 +122,43 @@ typedef struct BvhEdges {
 // the triangle on the edge's other side gets the opposite one, and the weights of the vertices are right even where the
 // triangle is seen so edge-on, or is so much a needle, that plain products would leave nothing but rounding. Without
 // contraction, so that it is no worse than plain products on a device whose fma() rounds twice.
-float8 bvh_edge_function(float8 a_x, float8 a_y, float8 b_x, float8 b_y) {
+BvhFloats bvh_edge_function(BvhFloats a_x, BvhFloats a_y, BvhFloats b_x, BvhFloats b_y) {
 #pragma OPENCL FP_CONTRACT OFF
-    const float8 right = a_y * b_x;
-    const float8 lost = fma(-a_y, b_x, right);
-    const float8 difference = fma(a_x, b_y, -right);
+    const BvhFloats right = a_y * b_x;
+    const BvhFloats lost = fused_multiply_add(-a_y, b_x, right);
+    const BvhFloats difference = fused_multiply_add(a_x, b_y, -right);
     return difference + lost;
 }
 
 // Woop, Benthin & Wald 2013, listing in appendix A, without the division and without the double-precision fallback: an
 // edge function of zero counts as inside on both sides.
 BvhEdges bvh_intersect_triangles(const global BvhLeaf* leaf, const BvhRay* ray, float t_max) {
-    const global float* rows_x = (const global float*)leaf + 8 * ray->axis.x;
-    const global float* rows_y = (const global float*)leaf + 8 * ray->axis.y;
-    const global float* rows_z = (const global float*)leaf + 8 * ray->axis.z;
-    const float8 a_z = vload8(0, rows_z) - ray->origin.z;
-    const float8 b_z = vload8(3, rows_z) - ray->origin.z;
-    const float8 c_z = vload8(6, rows_z) - ray->origin.z;
-    const float8 a_x = fma(a_z, (float8)(-ray->shear.x), vload8(0, rows_x) - ray->origin.x);
-    const float8 a_y = fma(a_z, (float8)(-ray->shear.y), vload8(0, rows_y) - ray->origin.y);
-    const float8 b_x = fma(b_z, (float8)(-ray->shear.x), vload8(3, rows_x) - ray->origin.x);
-    const float8 b_y = fma(b_z, (float8)(-ray->shear.y), vload8(3, rows_y) - ray->origin.y);
-    const float8 c_x = fma(c_z, (float8)(-ray->shear.x), vload8(6, rows_x) - ray->origin.x);
-    const float8 c_y = fma(c_z, (float8)(-ray->shear.y), vload8(6, rows_y) - ray->origin.y);
+    const global float* rows_x = (const global float*)leaf + BVH_WIDTH * ray->axis.x;
+    const global float* rows_y = (const global float*)leaf + BVH_WIDTH * ray->axis.y;
+    const global float* rows_z = (const global float*)leaf + BVH_WIDTH * ray->axis.z;
+    const BvhFloats a_z = BVH_LANES(vload)(0, rows_z) - ray->origin.z;
+    const BvhFloats b_z = BVH_LANES(vload)(3, rows_z) - ray->origin.z;
+    const BvhFloats c_z = BVH_LANES(vload)(6, rows_z) - ray->origin.z;
+    const BvhFloats a_x = fused_multiply_add(a_z, (BvhFloats)(-ray->shear.x), BVH_LANES(vload)(0, rows_x) - ray->origin.x);
+    const BvhFloats a_y = fused_multiply_add(a_z, (BvhFloats)(-ray->shear.y), BVH_LANES(vload)(0, rows_y) - ray->origin.y);
+    const BvhFloats b_x = fused_multiply_add(b_z, (BvhFloats)(-ray->shear.x), BVH_LANES(vload)(3, rows_x) - ray->origin.x);
+    const BvhFloats b_y = fused_multiply_add(b_z, (BvhFloats)(-ray->shear.y), BVH_LANES(vload)(3, rows_y) - ray->origin.y);
+    const BvhFloats c_x = fused_multiply_add(c_z, (BvhFloats)(-ray->shear.x), BVH_LANES(vload)(6, rows_x) - ray->origin.x);
+    const BvhFloats c_y = fused_multiply_add(c_z, (BvhFloats)(-ray->shear.y), BVH_LANES(vload)(6, rows_y) - ray->origin.y);
 
-    const float8 u = bvh_edge_function(c_x, c_y, b_x, b_y);
-    const float8 v = bvh_edge_function(a_x, a_y, c_x, c_y);
-    const float8 w = bvh_edge_function(b_x, b_y, a_x, a_y);
-    const float8 determinant = u + v + w;
-    const int8 sign = as_int8(determinant) & (int8)(0x80000000);
-    const float8 t = (u * a_z + v * b_z + w * c_z) * ray->shear.z;
+    const BvhFloats u = bvh_edge_function(c_x, c_y, b_x, b_y);
+    const BvhFloats v = bvh_edge_function(a_x, a_y, c_x, c_y);
+    const BvhFloats w = bvh_edge_function(b_x, b_y, a_x, a_y);
+    const BvhFloats determinant = u + v + w;
+    const BvhInts sign = BVH_LANES(as_int)(determinant) & (BvhInts)(0x80000000);
+    const BvhFloats t = (u * a_z + v * b_z + w * c_z) * ray->shear.z;
 
     BvhEdges edges;
-    edges.v = as_float8(as_int8(v) ^ sign);
-    edges.w = as_float8(as_int8(w) ^ sign);
+    edges.v = BVH_LANES(as_float)(BVH_LANES(as_int)(v) ^ sign);
+    edges.w = BVH_LANES(as_float)(BVH_LANES(as_int)(w) ^ sign);
     edges.determinant = fabs(determinant);
-    edges.scaled_t = as_float8(as_int8(t) ^ sign);
-    const float8 smallest = min(as_float8(as_int8(u) ^ sign), min(edges.v, edges.w));
+    edges.scaled_t = BVH_LANES(as_float)(BVH_LANES(as_int)(t) ^ sign);
+    const BvhFloats smallest = min(BVH_LANES(as_float)(BVH_LANES(as_int)(u) ^ sign), min(edges.v, edges.w));
     edges.hits =
         bvh_lane_mask((smallest >= 0.0f) & (edges.scaled_t > 0.0f) & (edges.scaled_t < t_max * edges.determinant));
     return edges;
@@ -153,11 +169,11 @@ void bvh_closest_in_leaf(const global BvhLeaf* leaf, const BvhRay* ray, Hit* hit
     const BvhEdges edges = bvh_intersect_triangles(leaf, ray, hit->t);
     if (edges.hits == 0)
         return;
-    const float8 scale = 1.0f / edges.determinant;
-    float t[8], u[8], v[8];
-    vstore8(edges.scaled_t * scale, 0, t);
-    vstore8(edges.v * scale, 0, u);
-    vstore8(edges.w * scale, 0, v);
+    const BvhFloats scale = 1.0f / edges.determinant;
+    float t[BVH_WIDTH], u[BVH_WIDTH], v[BVH_WIDTH];
+    BVH_LANES(vstore)(edges.scaled_t * scale, 0, t);
+    BVH_LANES(vstore)(edges.v * scale, 0, u);
+    BVH_LANES(vstore)(edges.w * scale, 0, v);
     for (ulong hits = edges.hits; hits != 0; hits &= hits - 1) {
         const int lane = bvh_first_lane(hits);
         if (t[lane] < hit->t) {
@@ -186,7 +202,7 @@ Hit bvh_closest_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, f
     int child = 0;
     for (;;) {
         const global BvhNode* node = nodes + child;
-        float8 entry_t;
+        BvhFloats entry_t;
         ulong hits = 0;
         if (child >= 0)
             hits = bvh_intersect_boxes(node, &ray, hit.t, &entry_t);
@@ -207,8 +223,8 @@ Hit bvh_closest_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, f
         hits &= hits - 1;
         if (hits == 0)
             continue;
-        uint distances[8];
-        vstore8(as_uint8(entry_t), 0, distances);
+        uint distances[BVH_WIDTH];
+        BVH_LANES(vstore)(BVH_LANES(as_uint)(entry_t), 0, distances);
         ulong nearest = ((ulong)distances[lane] << 32) | (uint)child;
         const int bottom = top;
         for (; hits != 0; hits &= hits - 1) {
@@ -234,7 +250,7 @@ bool bvh_any_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, floa
     int child = 0;
     for (;;) {
         const global BvhNode* node = nodes + child;
-        float8 entry_t;
+        BvhFloats entry_t;
         ulong hits = 0;
         if (child >= 0)
             hits = bvh_intersect_boxes(node, &ray, t_max, &entry_t);
@@ -251,8 +267,8 @@ bool bvh_any_hit(const global BvhNode* nodes, const global BvhLeaf* leaves, floa
         hits &= hits - 1;
         if (hits == 0)
             continue;
-        float distances[8];
-        vstore8(entry_t, 0, distances);
+        float distances[BVH_WIDTH];
+        BVH_LANES(vstore)(entry_t, 0, distances);
         float nearest = distances[lane];
         for (; hits != 0; hits &= hits - 1) {
             lane = bvh_first_lane(hits);

@@ -16,7 +16,7 @@
 Spectrum body_reflectance(const Scene* scene, const global SurfaceMaterial* material, float thickness, int slot) {
     const global float* rho = spectrum_row(scene->pass_table, material->reflectance);
     const global float* eta = spectrum_row(scene->pass_table, material->eta);
-    const int first = max(slot, 0) / LANES, last = slot < 0 ? BLOCKS : first + 1;
+    const int first = first_block(slot), last = last_block(slot);
     Spectrum body;
     for (int b = first; b < last; ++b) {
         const floatv n = vloadv(b, eta), r = vloadv(b, rho);

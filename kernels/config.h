@@ -7,6 +7,12 @@
 #define BVH_STACK_SIZE 64
 #endif
 
+// Children of a BVH node and triangles of a leaf, which are tested at once: 8, 4 or 2. The host builds the tree so wide as its table
+// of devices says (host/opencl/device_table.cpp).
+#ifndef BVH_WIDTH
+#define BVH_WIDTH 8
+#endif
+
 // What the scene calls for (host/render/effects.h); an effect that is off leaves no code.
 #ifndef HAS_DIELECTRIC
 #define HAS_DIELECTRIC 0
@@ -65,6 +71,10 @@
 #ifndef HAS_AREA_LIGHT
 #define HAS_AREA_LIGHT 0
 #endif
+
+// Surfaces that are not diffuse, and kinds of lights: of what there is only one kind, none is looked up.
+#define HAS_SPECULAR (HAS_DIELECTRIC || HAS_CONDUCTOR)
+#define LIGHT_KINDS (HAS_POINT_LIGHT + HAS_SPOT_LIGHT + HAS_DISTANT_LIGHT + HAS_INFINITE_LIGHT + HAS_AREA_LIGHT)
 
 // Wavelengths: the pass's table has W of them, padded to W_PADDED = BLOCKS·LANES with wavelengths of weight zero. Paths
 // carry BLOCKS vectors of LANES floats.
@@ -132,9 +142,25 @@
 #define RECORD_RAYS 0
 #endif
 
+// 1: the device may end loops before they are done (see loops.h).
+#ifndef LOOPS_END_EARLY
+#define LOOPS_END_EARLY 0
+#endif
+
+// 0: the device has no fused multiply-add, and fma() is slow (see multiply_add.h).
+#ifndef HAS_FMA
+#define HAS_FMA 1
+#endif
+
 // 1: built with -cl-fast-relaxed-math.
 #ifndef FAST_MATH
 #define FAST_MATH 0
+#endif
+
+// Intel's compiler would run several work-items in one vector and take our vectors of wavelengths and boxes apart: eye paths took 2.4
+// times as long on it.
+#ifdef cl_intel_vec_len_hint
+#define kernel __kernel __attribute__((intel_vec_len_hint(1)))
 #endif
 
 #endif

@@ -9,7 +9,7 @@
 float3 weighted_xyz(const Scene* scene, const PathWeight* weight, int first, int second) {
     const global float* a = spectrum_row(scene->pass_table, first);
     const global float* b = spectrum_row(scene->pass_table, max(second, 0));
-    if (weight->slot >= 0) {
+    if (is_single(weight->slot)) {
         const float value = a[weight->slot] * (second >= 0 ? b[weight->slot] : 1.0f);
         return weight->scale * value * slot_weight(scene->pass_table, weight->slot);
     }
@@ -55,7 +55,7 @@ float3 diffuse_direct_light(const Scene* scene, const global SurfaceMaterial* ma
 float3 rough_direct_light(const Scene* scene, const global SurfaceMaterial* material, const Interaction* it, const Frame* frame,
                           float3 wo, bool outside, const PathWeight* weight, float u_light, float2 u_point) {
     const int chosen = choose_light(scene, u_light);
-    const bool both_sides = material->kind == MATERIAL_DIELECTRIC;
+    const bool both_sides = is_dielectric(material);
     const DirectLight light = sample_direct(scene->lights + chosen, it, frame->n, both_sides, u_point);
     if (light.irradiance <= 0.0f)
         return 0.0f;

@@ -4,6 +4,7 @@
 #include "direct_light.h"
 #include "finite.h"
 #include "grid.h"
+#include "loops.h"
 
 // Dimensions of a pixel's low-discrepancy sequence over the passes.
 #define EYE_FILM s01
@@ -18,11 +19,11 @@ void camera_ray(const global SceneConstants* c, float2 raster, float2 u_lens, fl
     *direction = (float3)(c->corner_x, c->corner_y, c->corner_z) + raster.x * (float3)(c->right_x, c->right_y, c->right_z) +
                  raster.y * (float3)(c->down_x, c->down_y, c->down_z);
 #if HAS_THIN_LENS
-    const float3 focus = *origin + c->focal_distance * *direction;
     const float2 lens = c->lens_radius * sample_disc(u_lens);
-    *origin += lens.x * (float3)(c->lens_right_x, c->lens_right_y, c->lens_right_z) +
-               lens.y * (float3)(c->lens_up_x, c->lens_up_y, c->lens_up_z);
-    *direction = focus - *origin;
+    const float3 offset = lens.x * (float3)(c->lens_right_x, c->lens_right_y, c->lens_right_z) +
+                          lens.y * (float3)(c->lens_up_x, c->lens_up_y, c->lens_up_z);
+    *origin += offset;
+    *direction -= offset / c->focal_distance;
 #endif
     *direction = unit_vector(*direction);
 }
@@ -56,6 +57,8 @@ void add_emission(const Scene* scene, const global SceneLight* light, float ligh
 
 void see_nothing(const Scene* scene, EyePath* path) {
 #if HAS_INFINITE_LIGHT
+    if (scene->constants->infinite_light < 0)
+        return;
     const global SceneLight* light = scene->lights + scene->constants->infinite_light;
     float light_pdf = 0.0f;
 #if HAS_NEARLY_SPECULAR
@@ -142,15 +145,15 @@ bool meet_rough(const Scene* scene, const global SurfaceMaterial* material, cons
     meet_dispersion(material, slot, &path->weight);
     float cosine;
     const Facing facing = facing_normal(it, -path->direction, &cosine);
-    const Frame frame = surface_frame(it, facing.normal);
+    const Frame frame = surface_frame(material, it, facing.normal);
     float3 wo = frame_from_world(&frame, -path->direction);
     wo.z = cosine;
     path->normal = facing.normal;
-    path->both_sides = material->kind == MATERIAL_DIELECTRIC;
+    path->both_sides = is_dielectric(material);
     // With DIRECT_PHOTONS direct light comes with the photons, but only where photons are taken.
-    if (!DIRECT_PHOTONS || !material->takes_photons)
+    if (!DIRECT_PHOTONS || !takes_photons(material))
         add_radiance(path, rough_direct_light(scene, material, it, &frame, wo, facing.outside, &path->weight, u_light, u_point));
-    if (!material->takes_photons)
+    if (!takes_photons(material))
         return true;
     make_visible_point(it, facing.normal, path->weight.slot, end);
     end->surface.material = it->material;
@@ -213,16 +216,16 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
         see_emission(&scene, &it, hit.t, &path);
         const global SurfaceMaterial* material = materials + it.material;
         float3 v = 0.0f;
-        if (material->kind != MATERIAL_DIFFUSE || HAS_COATED_DIFFUSE)
+        if (!is_diffuse(material) || HAS_COATED_DIFFUSE)
             v.x = depth == 0 ? u.EYE_FIRST_SCATTER : random_step(scramble.s2 + pass * 0x632be5abu, (uint)depth);
-        if (material->kind == MATERIAL_DIFFUSE) {
+        if (is_diffuse(material)) {
             if (!meet_diffuse(&scene, material, &it, v.x, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))
                 break;
         } else {
 #if HAS_ROUGH
             v.y = random_step(scramble.s0 + pass * 0x632be5abu, (uint)depth);
             v.z = random_step(scramble.s1 + pass * 0x632be5abu, (uint)depth);
-            if (material->alpha_u > 0.0f &&
+            if (is_rough(material) &&
                 !meet_rough(&scene, material, &it, slot, u.EYE_LIGHT, u.EYE_LIGHT_POINT, &path, &end))
                 break;
 #endif
@@ -249,6 +252,7 @@ kernel void eye_pass(SCENE_PARAMETERS, uint seed, uint pass, const global float*
     end.point.shadow_rays = ray_counts.any;
     visible_points[pixel] = end.point;
     count_non_finite(non_finite, NON_FINITE_EYE, path.non_finite);
+    count_cut_loops(non_finite);
 #if HAS_ROUGH_PHOTONS
     visible_surfaces[pixel] = end.surface;
 #endif

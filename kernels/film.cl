@@ -1,4 +1,4 @@
-// Step 6: the pixels' running sums of XYZ and of its square, in two floats each (never built with relaxed math, which would
+// Step 6: the pixels' running sums of XYZ and of its square, in three floats each and two (never built with relaxed math, which would
 // undo the compensation), and the search radius of each pixel.
 #include "config.h"
 #include "shared_types.h"
@@ -9,16 +9,42 @@
 // And the same for squares.
 #define LARGEST_SQUARED_SAMPLE 0x1p47f
 
-// Adds to high + low without loss: Knuth's TwoSum (Knuth 1997, TAOCP vol. 2, section 4.2.2, theorem B), then Dekker's of the two
-// parts (theorem C), which keeps the low part below half a unit of the high one; it would grow as a plain sum otherwise.
-void add_compensated(global float* high, global float* low, float value) {
+// a + b = *sum + *lost, exactly (Knuth 1997, TAOCP vol. 2, section 4.2.2, theorem B). X, Y and Z at once: half the time of one after
+// the other.
+void two_sum(float3 a, float3 b, float3* sum, float3* lost) {
 #pragma OPENCL FP_CONTRACT OFF
-    const float sum = *high + value;
-    const float virtual_value = sum - *high;
-    const float lost = (*high - (sum - virtual_value)) + (value - virtual_value);
-    const float tail = *low + lost;
-    *high = sum + tail;
-    *low = tail - (*high - sum);
+    const float3 s = a + b;
+    const float3 b_part = s - a;
+    *lost = (a - (s - b_part)) + (b - b_part);
+    *sum = s;
+}
+
+// The same in half the time where |a| >= |b| (Dekker's, theorem C); else *lost is off by a rounding of b at most.
+void fast_two_sum(float3 a, float3 b, float3* sum, float3* lost) {
+#pragma OPENCL FP_CONTRACT OFF
+    const float3 s = a + b;
+    *lost = b - (s - a);
+    *sum = s;
+}
+
+// Adds to high + low with the precision of two floats. The sum of the low parts is kept below half a unit of the high one; it would grow
+// as a plain sum otherwise.
+void add_compensated(float3* high, float3* low, float3 value) {
+    float3 sum, lost;
+    two_sum(*high, value, &sum, &lost);
+    fast_two_sum(sum, *low + lost, high, low);
+}
+
+// Adds to the sum of three floats with the precision of all three, some 72 bits: so the sum of many samples, rounded to a float, does
+// not depend on the order in which they came, or on how passes were shared out among films that are added up later. Only a sum
+// within 2^-48 of its size of the border between two floats could tell.
+void add_to_sum(float3* high, float3* middle, float3* low, float3 value) {
+    float3 sum, second, third, lost;
+    two_sum(*high, value, &sum, &lost);
+    two_sum(*middle, lost, &second, &third);
+    third += *low;
+    fast_two_sum(sum, second, high, &second);
+    fast_two_sum(second, third, middle, low);
 }
 
 // One work-item per pixel, before the first pass.
@@ -26,7 +52,7 @@ kernel void film_clear(const global float* radius0, global FilmPixel* film) {
     const uint pixel = (uint)get_global_id(0);
     global FilmPixel* f = film + pixel;
     for (int c = 0; c < 3; ++c)
-        f->sum_high[c] = f->sum_low[c] = f->square_high[c] = f->square_low[c] = 0.0f;
+        f->sum_high[c] = f->sum_middle[c] = f->sum_low[c] = f->square_high[c] = f->square_low[c] = 0.0f;
     f->samples = 0;
     f->rejected = 0;
     f->statistics_radius = radius0[pixel];
@@ -49,8 +75,13 @@ kernel void film_largest_radius(const global VisiblePoint* visible_points, globa
 void shrink_radius(global FilmPixel* f, float alpha, float found) {
     const float lost = (1.0f - alpha) * found / (f->statistics_count + found);  // share of r²
     const float step = f->statistics_radius * (lost / (1.0f + sqrt(1.0f - lost)));
-    add_compensated(&f->statistics_radius, &f->statistics_radius_low, -step);
-    add_compensated(&f->statistics_count, &f->statistics_count_low, alpha * found);
+    float3 high = (float3)(f->statistics_radius, f->statistics_count, 0.0f);
+    float3 low = (float3)(f->statistics_radius_low, f->statistics_count_low, 0.0f);
+    add_compensated(&high, &low, (float3)(-step, alpha * found, 0.0f));
+    f->statistics_radius = high.x;
+    f->statistics_radius_low = low.x;
+    f->statistics_count = high.y;
+    f->statistics_count_low = low.y;
 }
 
 void count_rays(global uint* rays, uint more, global uint* carries, uint carry) {
@@ -77,15 +108,17 @@ void add_sample(global FilmPixel* f, const VisiblePoint* point, float4 gathered,
         return;
     }
     ++f->samples;
-    const float values[3] = {xyz.x, xyz.y, xyz.z};
-    for (int c = 0; c < 3; ++c) {
-        add_compensated(&f->sum_high[c], &f->sum_low[c], values[c]);
-        // Without branches, which would keep PoCL from vectorising over pixels: four times slower.
-        const bool has_square = fabs(values[c]) <= LARGEST_SQUARED_SAMPLE && f->square_high[c] < INFINITY;
-        add_compensated(&f->square_high[c], &f->square_low[c], values[c] * values[c]);
-        f->square_high[c] = has_square ? f->square_high[c] : INFINITY;
-        f->square_low[c] = has_square ? f->square_low[c] : 0.0f;
-    }
+    float3 high = vload3(0, f->sum_high), middle = vload3(0, f->sum_middle), low = vload3(0, f->sum_low);
+    add_to_sum(&high, &middle, &low, xyz);
+    vstore3(high, 0, f->sum_high);
+    vstore3(middle, 0, f->sum_middle);
+    vstore3(low, 0, f->sum_low);
+    high = vload3(0, f->square_high);
+    low = vload3(0, f->square_low);
+    const int3 has_square = fabs(xyz) <= LARGEST_SQUARED_SAMPLE && high < INFINITY;
+    add_compensated(&high, &low, xyz * xyz);
+    vstore3(select((float3)(INFINITY), high, has_square), 0, f->square_high);
+    vstore3(select((float3)(0.0f), low, has_square), 0, f->square_low);
 }
 
 // One work-item per pixel.

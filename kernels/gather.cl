@@ -1,6 +1,7 @@
 // Step 5: at each visible point, the photons within its radius on the same surface: Σ_w c_w T_w f_w Φ_w.
 #include "finite.h"
 #include "grid.h"
+#include "loops.h"
 #include "sampling.h"
 #include "spectrum.h"
 #if HAS_ROUGH_PHOTONS
@@ -105,8 +106,8 @@ void add_rough_photon(const Search* search, uint index, Gathered* gathered) {
     const global SurfaceMaterial* material = search->scene->materials + search->surface.material;
     const bool outside = search->surface.outside;
     // Of the path's wavelengths and the photon's.
-    const int slot = search->slot >= 0 ? search->slot : photon->slot;
-    if (photon->slot >= 0 && photon->slot != slot)
+    const int slot = is_single(search->slot) ? search->slot : photon->slot;
+    if (is_single(photon->slot) && photon->slot != slot)
         return;
     const float3 incident = frame_from_world(&search->frame, unpack_normal(search->photon_surfaces[index].incident));
     const bool reflected = is_on_same_side(search, index);
@@ -122,18 +123,18 @@ void add_rough_photon(const Search* search, uint index, Gathered* gathered) {
         const float inverse_eta = inverse_relative_eta(search->scene, material, outside, slot);
         factor *= inverse_eta * inverse_eta;  // radiance
     }
-    if (!is_finite(factor * (slot >= 0 ? spectrum_at(share, slot) : spectrum_sum(share)))) {
+    if (!is_finite(factor * (is_single(slot) ? spectrum_at(share, slot) : spectrum_sum(share)))) {
         ++gathered->non_finite;
         return;
     }
     ++gathered->count;
-    if (photon->slot >= 0) {
-        const float throughput = search->slot >= 0 ? 1.0f : search->eye_spectrum[slot];
+    if (is_single(photon->slot)) {
+        const float throughput = is_single(search->slot) ? 1.0f : search->eye_spectrum[slot];
         gathered->flux.xyz += factor * spectrum_at(share, slot) * throughput * (float3)(photon->flux_x, photon->flux_y, photon->flux_z);
         return;
     }
     const global float* spectrum = search->photon_spectra + (size_t)index * W_PADDED;
-    if (slot >= 0) {
+    if (is_single(slot)) {
         gathered->flux.single += factor * spectrum_at(share, slot) * spectrum[slot];
     } else {
         for (int b = 0; b < BLOCKS; ++b)
@@ -167,7 +168,7 @@ void add_photon(const Search* search, uint index, Gathered* gathered) {
     const global Photon* photon = search->photons + index;
     const float3 flux = (float3)(photon->flux_x, photon->flux_y, photon->flux_z);
 #if STORE_SPECTRAL_FLUX
-    if (search->slot >= 0) {
+    if (is_single(search->slot)) {
         if (photon->slot == SLOT_ALL)
             gathered->flux.single += search->photon_spectra[(size_t)index * W_PADDED + search->slot];
         else if (photon->slot == search->slot)
@@ -180,7 +181,7 @@ void add_photon(const Search* search, uint index, Gathered* gathered) {
 #endif
     ++gathered->count;
 #if COLOURED_EYE
-    if (photon->slot >= 0) {
+    if (is_single(photon->slot)) {
         gathered->flux.xyz += search->eye_spectrum[photon->slot] * flux;
     } else {
         for (int b = 0; b < BLOCKS; ++b)
@@ -307,10 +308,10 @@ kernel void gather(const global SceneConstants* constants, const global float* p
     }
     const float found = finish_sum(&gathered);
     float3 flux = gathered.flux.xyz;
-    if (point.slot >= 0)
+    if (is_single(point.slot))
         flux += gathered.flux.single * slot_weight(pass_table, point.slot);
 #if COLOURED_EYE
-    if (point.slot == SLOT_ALL) {
+    if (!is_single(point.slot)) {
         for (int b = 0; b < BLOCKS; ++b)
             gathered.flux.spectrum.block[b] *= vloadv(b, search.eye_spectrum);
         flux += spectrum_to_xyz(pass_table, &gathered.flux.spectrum);
@@ -322,5 +323,6 @@ kernel void gather(const global SceneConstants* constants, const global float* p
         ++gathered.non_finite;
     }
     count_non_finite(non_finite, NON_FINITE_GATHER, gathered.non_finite);
+    count_cut_loops(non_finite);
     gathered_flux[pixel] = (float4)(flux, found);
 }

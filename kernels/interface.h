@@ -19,7 +19,7 @@ float film_thickness(const Scene* scene, const global SurfaceMaterial* material,
         return fmax(evaluate_texture(scene->textures + material->film_texture, scene->texels, it->point, uv), 0.0f);
     }
 #endif
-    return material->film_layers > 0 ? scene->film_layers[material->film].thickness : 0.0f;
+    return film_layers_on(material) > 0 ? scene->film_layers[material->film].thickness : 0.0f;
 }
 
 // Shares of the power of unpolarised light that are reflected and transmitted; what is neither is absorbed.
@@ -32,11 +32,11 @@ typedef struct InterfaceOptics {
 // the film's first layer.
 InterfaceOptics interface_optics(const Scene* scene, const global SurfaceMaterial* material, float thickness, bool outside,
                                  float cos_i, int slot) {
-    const ThinFilm film = {scene->film_layers + material->film, material->film_layers, thickness};
+    const ThinFilm film = {scene->film_layers + material->film, film_layers_on(material), thickness};
     const global float* eta = spectrum_row(scene->pass_table, material->eta);
     const global float* k = spectrum_row(scene->pass_table, material->k);
-    const bool opaque = material->kind == MATERIAL_CONDUCTOR;
-    const int first = max(slot, 0) / LANES, last = slot < 0 ? BLOCKS : first + 1;
+    const bool opaque = is_conductor(material);
+    const int first = first_block(slot), last = last_block(slot);
     InterfaceOptics optics;
     for (int b = first; b < last; ++b) {
         const FilmOptics o = film_optics(scene->pass_table, b, &film, outside || opaque, cos_i, (floatv)(1.0f), vloadv(b, eta),
@@ -47,9 +47,11 @@ InterfaceOptics interface_optics(const Scene* scene, const global SurfaceMateria
     return optics;
 }
 
-// The frame in which the surface's roughness is given, around n.
-Frame surface_frame(const Interaction* it, float3 n) {
+// The frame in which the surface's roughness is given, around n: any frame if it is the same in all directions.
+Frame surface_frame(const global SurfaceMaterial* material, const Interaction* it, float3 n) {
 #if HAS_ANISOTROPIC
+    if (material->alpha_u == material->alpha_v)
+        return make_frame(n);
     const float3 across = it->tangent - dot(it->tangent, n) * n;
     const float length2 = dot(across, across);
     if (length2 > 1e-10f * dot(it->tangent, it->tangent)) {
@@ -82,7 +84,7 @@ RoughScattering evaluate_rough(const Scene* scene, const global SurfaceMaterial*
     if (wi.z > 0.0f) {
         result.geometry = ggx_reflection(wo, wi, alpha, &m);
         result.pdf = ggx_reflection_pdf(wo, m, alpha);
-    } else if (material->kind == MATERIAL_DIELECTRIC) {
+    } else if (is_dielectric(material)) {
         const float eta = 1.0f / inverse_relative_eta(scene, material, outside, slot);
         result.geometry = ggx_refraction(wo, wi, eta, alpha, &m);
         result.pdf = ggx_refraction_pdf(wo, wi, m, eta, alpha);
@@ -107,7 +109,7 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
     Facing facing = facing_normal(it, -*direction, &cosine);
     const float thickness = film_thickness(scene, material, it);
     const float inverse_eta = inverse_relative_eta(scene, material, facing.outside, weight->slot);
-    const bool rough = HAS_ROUGH && material->alpha_u > 0.0f;
+    const bool rough = is_rough(material);
     for (int attempt = 0; attempt < 2; ++attempt) {
         float3 m = facing.normal;
         float cos_i = cosine;
@@ -117,7 +119,7 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
         float3 wo;
         Frame frame;
         if (rough) {
-            frame = surface_frame(it, facing.normal);
+            frame = surface_frame(material, it, facing.normal);
             wo = frame_from_world(&frame, -*direction);
             wo.z = cosine;
             facet = sample_ggx_visible_normal(wo, alpha, u.yz);
@@ -134,7 +136,7 @@ bool scatter_interface(const Scene* scene, const global SurfaceMaterial* materia
             scattered = reflect(*direction, m, cos_i);
         } else {
             const float cos2_t = refracted_cosine_squared(cos_i, inverse_eta);
-            if (cos2_t <= 0.0f || material->kind != MATERIAL_DIELECTRIC)
+            if (cos2_t <= 0.0f || !is_dielectric(material))
                 return false;  // nothing is transmitted
             scattered = refract(*direction, m, inverse_eta, cos_i, sqrt(cos2_t));
         }

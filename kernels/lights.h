@@ -5,6 +5,19 @@
 
 #include "scene.h"
 
+// A light's kind.
+int light_kind(const global SceneLight* light) {
+#if LIGHT_KINDS == 1
+    return HAS_POINT_LIGHT      ? LIGHT_POINT
+           : HAS_SPOT_LIGHT     ? LIGHT_SPOT
+           : HAS_DISTANT_LIGHT  ? LIGHT_DISTANT
+           : HAS_INFINITE_LIGHT ? LIGHT_INFINITE
+                                : LIGHT_AREA;
+#else
+    return light->kind;
+#endif
+}
+
 // The light whose interval of the CDF holds u in [0, 1).
 int choose_light(const Scene* scene, float u) {
     int low = 0, high = scene->constants->light_count;
@@ -51,7 +64,7 @@ Emission sample_emission(const Scene* scene, const global SceneLight* light, flo
     e.origin = light_position(light);
     e.direction = light_direction(light);
     e.power = light->scale / light->probability;
-    switch (light->kind) {
+    switch (light_kind(light)) {
 #if HAS_POINT_LIGHT
     case LIGHT_POINT:
         e.direction = sample_sphere(u_direction);
@@ -132,7 +145,7 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
     d.pdf = 0.0f;
 #endif
 #if HAS_DISTANT_LIGHT
-    if (light->kind == LIGHT_DISTANT) {
+    if (light_kind(light) == LIGHT_DISTANT) {
         d.direction = -light_direction(light);
         d.origin = leave_surface(it, d.direction);
         d.t_max = INFINITE_DISTANCE;
@@ -141,7 +154,7 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
     }
 #endif
 #if HAS_INFINITE_LIGHT
-    if (light->kind == LIGHT_INFINITE) {
+    if (light_kind(light) == LIGHT_INFINITE) {
         if (both_sides) {
             d.irradiance *= 2.0f;
             n = u.x < 0.5f ? n : -n;
@@ -161,7 +174,7 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
 #endif
     float3 target = light_position(light);
 #if HAS_AREA_LIGHT
-    if (light->kind == LIGHT_AREA)
+    if (light_kind(light) == LIGHT_AREA)
         target = area_light_point(light, u);
 #endif
     const float3 towards = target - it->point;
@@ -170,11 +183,11 @@ DirectLight sample_direct(const global SceneLight* light, const Interaction* it,
     const float facing = both_sides ? fabs(dot(towards, n)) : dot(towards, n);
     d.irradiance *= max(facing, 0.0f) * inverse_distance * inverse_distance * inverse_distance;
 #if HAS_SPOT_LIGHT
-    if (light->kind == LIGHT_SPOT)
+    if (light_kind(light) == LIGHT_SPOT)
         d.irradiance *= spot_falloff(cos_light, light->cos_total_width, light->cos_falloff_start);
 #endif
 #if HAS_AREA_LIGHT
-    if (light->kind == LIGHT_AREA) {
+    if (light_kind(light) == LIGHT_AREA) {
         d.irradiance *= light->area * (light->two_sided ? fabs(cos_light) : max(cos_light, 0.0f));
 #if HAS_NEARLY_SPECULAR
         d.pdf = area_light_pdf(light, dot(towards, towards), fabs(cos_light));

@@ -14,6 +14,7 @@
 #ifndef TRISTIM_MICROFACET_H
 #define TRISTIM_MICROFACET_H
 
+#include "multiply_add.h"
 #include "sampling.h"
 
 // Directions nearer to the horizon scatter nothing: squares of half vectors could underflow, and values overflow.
@@ -88,7 +89,7 @@ float3 reflection_half_vector(float3 wo, float3 wi) { return unit_vector(wo + wi
 // The facet that refracts wo to wi, turned so that m.z >= 0 (Walter et al. 2007, eq. 16). It refracts only if
 // wo·m > 0 > wi·m. fma rounds once, so that the components of a sum that nearly cancels are still right.
 float3 refraction_half_vector(float3 wo, float3 wi, float eta) {
-    const float3 sum = fma((float3)(eta), wi, wo);
+    const float3 sum = fused_multiply_add((float3)(eta), wi, wo);
     const float3 m = sum * (1.0f / sqrt(max(dot(sum, sum), FLT_MIN)));  // 0 if eta is 1 and wi = -wo
     return m.z < 0.0f ? -m : m;
 }
@@ -98,7 +99,7 @@ float3 refraction_half_vector(float3 wo, float3 wi, float eta) {
 // cancels. For eta = 1 its next neighbour stands, so that the lobe, then a single direction, stays finite.
 float refraction_jacobian(float wo_m, float wi_m, float eta) {
     const float difference = max(fabs((eta - 1.0f) * (eta + 1.0f)), FLT_EPSILON);
-    const float ratio = eta * fma(-eta, wi_m, wo_m) / difference;
+    const float ratio = eta * multiply_add(-eta, wi_m, wo_m) / difference;
     return fabs(wi_m) * ratio * ratio;
 }
 

@@ -29,7 +29,7 @@ void keep_slot(PathWeight* weight, int slot) {
 #if PATH_SPECTRUM
 // Σ_w v_w weight_w / scale over the wavelengths that the path carries.
 float carried_sum(const PathWeight* weight, const Spectrum* v) {
-    if (weight->slot >= 0)
+    if (is_single(weight->slot))
         return spectrum_at(v, weight->slot);
     floatv sum = 0.0f;
     for (int b = 0; b < BLOCKS; ++b)
@@ -37,11 +37,11 @@ float carried_sum(const PathWeight* weight, const Spectrum* v) {
     return lanes_sum(sum);
 }
 
-float carried_total(const PathWeight* weight) { return weight->slot >= 0 ? 1.0f : spectrum_sum(&weight->spectrum); }
+float carried_total(const PathWeight* weight) { return is_single(weight->slot) ? 1.0f : spectrum_sum(&weight->spectrum); }
 
 void multiply_weight(PathWeight* weight, const Spectrum* v, float factor) {
     weight->scale *= factor;
-    if (weight->slot >= 0) {
+    if (is_single(weight->slot)) {
         weight->scale *= spectrum_at(v, weight->slot);
         return;
     }

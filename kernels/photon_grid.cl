@@ -2,17 +2,17 @@
 // the number of threads. A radix sort of (bucket, photon) pairs in two passes of RADIX_BITS bits.
 #include "grid.h"
 
-// One work-item in all. Turns the number of photons of each of photon_pass's work-items into where its photons begin
-// among all. summary: [0] photons in all, [1] the most that one item would have stored.
-kernel void photon_offsets(const global uint* item_counts, uint items, uint capacity, global uint* item_offsets,
+// One work-item in all. Turns the number of photons of each of photon_pass's work-items, from `first` to before `end`, into where its
+// photons begin among all. summary: [0] photons in all so far, [1] the most that one item would have stored.
+kernel void photon_offsets(const global uint* item_counts, uint first, uint end, uint capacity, global uint* item_offsets,
                            global uint* summary) {
-    uint total = 0, most = 0;
-    for (uint i = 0; i < items; ++i) {
+    uint total = first == 0u ? 0u : summary[0], most = first == 0u ? 0u : summary[1];
+    for (uint i = first; i < end; ++i) {
         item_offsets[i] = total;
         total += min(item_counts[i], capacity);
         most = max(most, item_counts[i]);
     }
-    item_offsets[items] = total;
+    item_offsets[end] = total;
     summary[0] = total;
     summary[1] = most;
 }

@@ -4,6 +4,7 @@
 #include "bsdf.h"
 #include "finite.h"
 #include "lights.h"
+#include "loops.h"
 
 // Dimensions of the low-discrepancy sequence over all photons of the render.
 #define PHOTON_DIRECTION s01
@@ -30,7 +31,7 @@ void store_photon(const Scene* scene, PhotonStore* store, const Interaction* it,
     const bool has_room = index < store->end;
     const float scale = flux->scale * factor;
     float3 xyz;
-    if (flux->slot >= 0) {
+    if (is_single(flux->slot)) {
         xyz = scale * slot_weight(scene->pass_table, flux->slot);
     } else {
         Spectrum scaled;
@@ -71,7 +72,7 @@ PathWeight reflected_diffusely(const Scene* scene, const global SurfaceMaterial*
     }
 #endif
     const global float* row = spectrum_row(scene->pass_table, material->reflectance);
-    if (weight->slot >= 0) {
+    if (is_single(weight->slot)) {
         reflected.scale *= row[weight->slot];
     } else {
         for (int b = 0; b < BLOCKS; ++b)
@@ -183,7 +184,7 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
         const Interaction it = make_interaction(scene, &hit);
         const global SurfaceMaterial* material = scene->materials + it.material;
         const bool store_it = depth > 0 || DIRECT_PHOTONS;
-        if (material->kind == MATERIAL_DIFFUSE) {
+        if (is_diffuse(material)) {
             if (!meet_diffuse(scene, material, &it, store_it, (uint)depth, &path, store))
                 return;
         } else {
@@ -204,7 +205,7 @@ void trace_photon(const Scene* scene, uint seed, uint pass, uint path_number, fl
             if (!scatter(scene, material, &it, &path.direction, v, slot, false, &path.weight, &pdf))
                 break;
 #if HAS_ROUGH
-            path.bounced |= material->alpha_u > 0.0f;
+            path.bounced |= is_rough(material);
 #endif
         }
         path.origin = leave_surface(&it, path.direction);
@@ -238,4 +239,5 @@ kernel void photon_pass(SCENE_PARAMETERS, uint seed, uint pass, uint paths_per_p
     item_counts[item] = store.next - item * capacity;
     item_rays[item] += ray_counts.closest;
     count_non_finite(non_finite, NON_FINITE_PHOTON, store.non_finite);
+    count_cut_loops(non_finite);
 }

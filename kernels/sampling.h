@@ -2,6 +2,8 @@
 #ifndef TRISTIM_SAMPLING_H
 #define TRISTIM_SAMPLING_H
 
+#include "multiply_add.h"
+
 #define PI 3.14159265358979f
 #define INV_PI 0.318309886183791f
 
@@ -33,8 +35,14 @@ float2 cos_sin_turns(float turns) {
     const float quarter = rint(4.0f * turns);
     const float x = 0.5f * PI * (4.0f * turns - quarter);
     const float x2 = x * x;
-    const float s = x * fma(x2, fma(x2, fma(x2, fma(x2, 1.0f / 362880.0f, -1.0f / 5040.0f), 1.0f / 120.0f), -1.0f / 6.0f), 1.0f);
-    const float c = fma(x2, fma(x2, fma(x2, fma(x2, 1.0f / 40320.0f, -1.0f / 720.0f), 1.0f / 24.0f), -0.5f), 1.0f);
+    float s = multiply_add(x2, 1.0f / 362880.0f, -1.0f / 5040.0f);
+    s = multiply_add(x2, s, 1.0f / 120.0f);
+    s = multiply_add(x2, s, -1.0f / 6.0f);
+    s = x * multiply_add(x2, s, 1.0f);
+    float c = multiply_add(x2, 1.0f / 40320.0f, -1.0f / 720.0f);
+    c = multiply_add(x2, c, 1.0f / 24.0f);
+    c = multiply_add(x2, c, -0.5f);
+    c = multiply_add(x2, c, 1.0f);
     const int q = (int)quarter & 3;
     const float2 swapped = (q & 1) ? (float2)(s, c) : (float2)(c, s);
     return (float2)(q == 1 || q == 2 ? -swapped.x : swapped.x, q >= 2 ? -swapped.y : swapped.y);

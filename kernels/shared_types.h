@@ -4,6 +4,7 @@
 #define TRISTIM_SHARED_TYPES_H
 
 #ifdef __OPENCL_VERSION__
+#include "config.h"
 typedef uint tristim_uint;
 #else
 #include <cstdint>
@@ -17,22 +18,36 @@ typedef std::uint32_t tristim_uint;
 //   row 4 + s     spectrum s of the scene; behind them the rows that film_tables.cl fills
 #define PASS_TABLE_SPECTRA 4
 
-// Eight children in structure-of-arrays form, 256 bytes. child >= 0 is a node, child < 0 is ~leaf. Empty slots have
-// bounds low = +1e18, high = -1e18.
+// Nodes and leaves of the BVH are rows of BVH_WIDTH values each, so that a device reads a row at once. These are the rows' numbers;
+// of three coordinates the first is x. The host writes them as host/bvh/bvh.h's BvhBlocks, with a width for each device.
+#define BVH_LOW 0
+#define BVH_HIGH 3
+#define BVH_CHILD 6
+#define BVH_NODE_ROWS 8
+#define BVH_V0 0
+#define BVH_V1 3
+#define BVH_V2 6
+#define BVH_ID 9
+#define BVH_LEAF_ROWS 10
+
+#ifdef __OPENCL_VERSION__
+// BVH_WIDTH children; 256 bytes if that is 8. child >= 0 is a node, child < 0 is ~leaf. Empty slots have bounds low = +1e18,
+// high = -1e18.
 typedef struct BvhNode {
-    float low_x[8], low_y[8], low_z[8];
-    float high_x[8], high_y[8], high_z[8];
-    int child[8];
-    int unused[8];
+    float low_x[BVH_WIDTH], low_y[BVH_WIDTH], low_z[BVH_WIDTH];
+    float high_x[BVH_WIDTH], high_y[BVH_WIDTH], high_z[BVH_WIDTH];
+    int child[BVH_WIDTH];
+    int unused[BVH_WIDTH];
 } BvhNode;
 
-// Eight triangles in structure-of-arrays form, 320 bytes. Empty lanes have id = -1 and degenerate vertices.
+// BVH_WIDTH triangles; 320 bytes if that is 8. Empty lanes have id = -1 and degenerate vertices.
 typedef struct BvhLeaf {
-    float v0_x[8], v0_y[8], v0_z[8];
-    float v1_x[8], v1_y[8], v1_z[8];
-    float v2_x[8], v2_y[8], v2_z[8];
-    int id[8];
+    float v0_x[BVH_WIDTH], v0_y[BVH_WIDTH], v0_z[BVH_WIDTH];
+    float v1_x[BVH_WIDTH], v1_y[BVH_WIDTH], v1_z[BVH_WIDTH];
+    float v2_x[BVH_WIDTH], v2_y[BVH_WIDTH], v2_z[BVH_WIDTH];
+    int id[BVH_WIDTH];
 } BvhLeaf;
+#endif
 
 // A ray for the stand-alone traversal kernel, 32 bytes. Hits lie at 0 < t < t_max in units of |direction|, which should be
 // about 1.
@@ -81,7 +96,7 @@ typedef struct Triangle {
     float edge1_x, edge1_y, edge1_z;
     int light;  // the area light on it, or -1
     float edge2_x, edge2_y, edge2_z;
-    int attributes;  // index of its first vertex attribute, or -1: three normals, then three pairs u, v if HAS_UV
+    int attributes;  // index of its first vertex attribute, or -1: three normals (0: as the triangle), then three pairs u, v if HAS_UV
     float normal_x, normal_y, normal_z;  // unit geometric normal
     float extent;  // largest |coordinate| of its vertices, see offset_from_triangle
 } Triangle;
@@ -215,9 +230,10 @@ typedef struct PhotonSurface {
 // Beyond this they come near to overflow.
 #define LARGEST_RADIUS 0x1p60f
 
-// Running sums of one pixel, compensated (high and low part), 84 bytes: survive a million passes in float.
+// Running sums of one pixel, in floats that do not overlap, 96 bytes. The samples' sum has some 72 bits, so that the order of the
+// passes does not show (film.cl).
 typedef struct FilmPixel {
-    float sum_high[3], sum_low[3];
+    float sum_high[3], sum_middle[3], sum_low[3];
     float square_high[3], square_low[3];  // square_high is infinite once a sample was too large to be squared
     tristim_uint samples;
     tristim_uint rejected;  // samples that were not finite
@@ -228,19 +244,19 @@ typedef struct FilmPixel {
 } FilmPixel;
 
 // Counts of values that were not finite, by the kernel that left them out: two uints each, the low one first. The film counts by
-// pixel.
+// pixel. Behind them, of work-items whose loops the device ended early.
 #define NON_FINITE_EYE 0
 #define NON_FINITE_PHOTON 1
 #define NON_FINITE_GATHER 2
-#define NON_FINITE_COUNTS 3
+#define CUT_LOOPS 3
+#define NON_FINITE_COUNTS 4
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(BvhNode) == 256 && sizeof(BvhLeaf) == 320);
 static_assert(sizeof(Ray) == 32 && sizeof(RayHit) == 16);
 static_assert(sizeof(SceneConstants) == 128 && sizeof(Triangle) == 64 && sizeof(SurfaceMaterial) == 64);
 static_assert(sizeof(SceneFilmLayer) == 16 && sizeof(SceneTexture) == 96);
 static_assert(sizeof(SceneLight) == 96 && sizeof(VisiblePoint) == 48 && sizeof(Photon) == 32);
-static_assert(sizeof(FilmPixel) == 84 && sizeof(VisibleSurface) == 20 && sizeof(PhotonSurface) == 8);
+static_assert(sizeof(FilmPixel) == 96 && sizeof(VisibleSurface) == 20 && sizeof(PhotonSurface) == 8);
 } // namespace tristim
 #endif
 

@@ -35,6 +35,13 @@ const global float* spectrum_row(const global float* pass_table, int spectrum) {
     return pass_table + (PASS_TABLE_SPECTRA + spectrum) * W_PADDED;
 }
 
+// Whether what has this slot is of that one wavelength. Without dispersion nothing is.
+bool is_single(int slot) { return HAS_DISPERSION && slot >= 0; }
+
+// The blocks of wavelengths that something with this slot needs, the second excluded.
+int first_block(int slot) { return is_single(slot) ? slot / LANES : 0; }
+int last_block(int slot) { return is_single(slot) ? slot / LANES + 1 : BLOCKS; }
+
 float3 slot_weight(const global float* pass_table, int slot) {
     return (float3)(pass_table[W_PADDED + slot], pass_table[2 * W_PADDED + slot], pass_table[3 * W_PADDED + slot]);
 }

@@ -6,9 +6,18 @@
 #include "path_weight.h"
 #include "scene.h"
 
+// Of the kinds that the scene has, a material's; is_dielectric is for surfaces that are not diffuse.
+bool is_diffuse(const global SurfaceMaterial* material) { return !HAS_SPECULAR || material->kind == MATERIAL_DIFFUSE; }
+bool is_dielectric(const global SurfaceMaterial* material) {
+    return HAS_CONDUCTOR ? HAS_DIELECTRIC && material->kind == MATERIAL_DIELECTRIC : HAS_DIELECTRIC;
+}
+bool is_conductor(const global SurfaceMaterial* material) { return HAS_CONDUCTOR && material->kind == MATERIAL_CONDUCTOR; }
+bool is_rough(const global SurfaceMaterial* material) { return HAS_ROUGH && material->alpha_u > 0.0f; }
+int film_layers_on(const global SurfaceMaterial* material) { return HAS_FILM ? material->film_layers : 0; }
+
 // Index of the side that light comes from over that of the other, for a dielectric.
 float inverse_relative_eta(const Scene* scene, const global SurfaceMaterial* material, bool outside, int slot) {
-    const float eta = spectrum_row(scene->pass_table, material->eta)[max(slot, 0)];
+    const float eta = spectrum_row(scene->pass_table, material->eta)[is_single(slot) ? slot : 0];
     return outside ? 1.0f / eta : eta;
 }
 
@@ -66,7 +75,7 @@ float3 scatter_conductor(const Scene* scene, const global SurfaceMaterial* mater
     const Facing facing = facing_normal(it, -direction, &cos_i);
     const global float* eta = spectrum_row(scene->pass_table, material->eta);
     const global float* k = spectrum_row(scene->pass_table, material->k);
-    if (weight->slot >= 0) {
+    if (is_single(weight->slot)) {
         weight->scale *= fresnel_conductor(cos_i, eta[weight->slot], k[weight->slot]);
     } else {
         for (int b = 0; b < BLOCKS; ++b)

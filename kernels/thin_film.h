@@ -17,6 +17,7 @@
 #ifndef TRISTIM_THIN_FILM_H
 #define TRISTIM_THIN_FILM_H
 
+#include "multiply_add.h"
 #include "sampling.h"
 #include "shared_types.h"
 #include "spectrum.h"
@@ -61,12 +62,12 @@ typedef struct Incidence {
 Incidence incidence(floatv n0, floatv cosine) {
 #pragma OPENCL FP_CONTRACT OFF
     const floatv square = n0 * n0;
-    const floatv q = n0 * cosine, q_low = fma(n0, cosine, -q);
+    const floatv q = n0 * cosine, q_low = fused_multiply_add(n0, cosine, -q);
     Incidence first;
     first.n = n0;
     first.q2.high = q * q;
-    first.q2.low = fma(q, q, -first.q2.high) + 2.0f * q * q_low;
-    first.beta2 = sum_exactly(square, -first.q2.high, fma(n0, n0, -square) - first.q2.low);
+    first.q2.low = fused_multiply_add(q, q, -first.q2.high) + 2.0f * q * q_low;
+    first.beta2 = sum_exactly(square, -first.q2.high, fused_multiply_add(n0, n0, -square) - first.q2.low);
     return first;
 }
 
@@ -74,7 +75,7 @@ Incidence incidence(floatv n0, floatv cosine) {
 DoubleFloat normal_squared(floatv n, Incidence first) {
 #pragma OPENCL FP_CONTRACT OFF
     const floatv square = n * n;
-    DoubleFloat q2 = sum_exactly(square, -first.beta2.high, fma(n, n, -square) - first.beta2.low);
+    DoubleFloat q2 = sum_exactly(square, -first.beta2.high, fused_multiply_add(n, n, -square) - first.beta2.low);
     q2.high = n == first.n ? first.q2.high : q2.high;
     q2.low = n == first.n ? first.q2.low : q2.low;
     return q2;
@@ -85,7 +86,7 @@ DoubleFloat absorbing_normal_squared(floatv n, floatv k, Incidence first) {
 #pragma OPENCL FP_CONTRACT OFF
     const DoubleFloat real = normal_squared(n, first);
     const floatv square = k * k;
-    return sum_exactly(real.high, -square, real.low - fma(k, k, -square));
+    return sum_exactly(real.high, -square, real.low - fused_multiply_add(k, k, -square));
 }
 
 // λ in nm and 1/λ.
@@ -98,22 +99,31 @@ floatv half_turns(float thickness, const Wavelength* wave, floatv q, floatv q_lo
 #pragma OPENCL FP_CONTRACT OFF
     const floatv d = 2.0f * thickness;
     const floatv ratio = d * wave->inverse;
-    const floatv ratio_low = fma(-ratio, wave->lambda, d) * wave->inverse;
+    const floatv ratio_low = fused_multiply_add(-ratio, wave->lambda, d) * wave->inverse;
     const floatv turns = ratio * q;
-    const floatv low = fma(ratio, q, -turns) + (ratio * q_low + ratio_low * q);
+    const floatv low = fused_multiply_add(ratio, q, -turns) + (ratio * q_low + ratio_low * q);
     return (turns - rint(turns)) + low;
 }
 
 // cos and sin of π·x for |x| <= 1/2 and a little more: Taylor's series to the 14th power, right to 1e-8.
 floatv cos_half_turns(floatv x) {
     const floatv a = PI * x, a2 = a * a;
-    return fma(a2, fma(a2, fma(a2, fma(a2, fma(a2, fma(a2, fma(a2, -1.0f / 87178291200.0f, 1.0f / 479001600.0f),
-           -1.0f / 3628800.0f), 1.0f / 40320.0f), -1.0f / 720.0f), 1.0f / 24.0f), -0.5f), 1.0f);
+    floatv sum = multiply_add(a2, -1.0f / 87178291200.0f, 1.0f / 479001600.0f);
+    sum = multiply_add(a2, sum, -1.0f / 3628800.0f);
+    sum = multiply_add(a2, sum, 1.0f / 40320.0f);
+    sum = multiply_add(a2, sum, -1.0f / 720.0f);
+    sum = multiply_add(a2, sum, 1.0f / 24.0f);
+    sum = multiply_add(a2, sum, -0.5f);
+    return multiply_add(a2, sum, 1.0f);
 }
 floatv sin_half_turns(floatv x) {
     const floatv a = PI * x, a2 = a * a;
-    return a * fma(a2, fma(a2, fma(a2, fma(a2, fma(a2, fma(a2, 1.0f / 6227020800.0f, -1.0f / 39916800.0f), 1.0f / 362880.0f),
-           -1.0f / 5040.0f), 1.0f / 120.0f), -1.0f / 6.0f), 1.0f);
+    floatv sum = multiply_add(a2, 1.0f / 6227020800.0f, -1.0f / 39916800.0f);
+    sum = multiply_add(a2, sum, 1.0f / 362880.0f);
+    sum = multiply_add(a2, sum, -1.0f / 5040.0f);
+    sum = multiply_add(a2, sum, 1.0f / 120.0f);
+    sum = multiply_add(a2, sum, -1.0f / 6.0f);
+    return a * multiply_add(a2, sum, 1.0f);
 }
 
 typedef struct ComplexV {
@@ -163,8 +173,8 @@ void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Incide
     const floatv q2_im = 2.0f * n * k;
     ComplexV q = complex_sqrt(q2.high, q2_im);
     // One step of Newton's method for the real part's low half.
-    const floatv residual_re = (fma(-q.re, q.re, q2.high) + q.im * q.im) + q2.low;
-    const floatv residual_im = fma(-2.0f * q.re, q.im, q2_im) + 2.0f * fma(n, k, -n * k);
+    const floatv residual_re = (fused_multiply_add(-q.re, q.re, q2.high) + q.im * q.im) + q2.low;
+    const floatv residual_im = fused_multiply_add(-2.0f * q.re, q.im, q2_im) + 2.0f * fused_multiply_add(n, k, -n * k);
     const floatv inverse = 1.0f / squared_modulus(q);
     const floatv q_low = 0.5f * (residual_re * q.re + residual_im * q.im) * inverse;
 
@@ -213,7 +223,7 @@ void cross_layer(Fields* s, Fields* p, floatv* decay, floatv n, floatv k, Incide
     const floatv q = max(sqrt(magnitude), SMALLEST_Q);
     const floatv epsilon = n * n;
     const floatv inverse = 1.0f / (q * epsilon);
-    const floatv q_low = 0.5f * (fma(-q, q, magnitude) + (q2.high < 0.0f ? -q2.low : q2.low)) * epsilon * inverse;
+    const floatv q_low = 0.5f * (fused_multiply_add(-q, q, magnitude) + (q2.high < 0.0f ? -q2.low : q2.low)) * epsilon * inverse;
     const floatv phase = half_turns(thickness, wave, q, q_low);
     const floatv cosine = cos_half_turns(phase), sine = sin_half_turns(phase);
     const floatv q_sine = q * sine;

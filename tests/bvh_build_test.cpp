@@ -5,7 +5,8 @@
 #include "bvh_oracle.h"
 
 #include <Imath/ImathBox.h>
-#include <cstring>
+#include <array>
+#include <fmt/format.h>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
@@ -15,9 +16,10 @@ namespace {
 
 using namespace bvh_test;
 
-Imath::Box3f slot_box(const BvhNode& node, int slot) {
-    return {V3f(node.low_x[slot], node.low_y[slot], node.low_z[slot]),
-            V3f(node.high_x[slot], node.high_y[slot], node.high_z[slot])};
+constexpr std::array widths{8, 4, 2};
+
+Imath::Box3f slot_box(const Bvh& bvh, std::size_t node, std::size_t slot) {
+    return {bvh.nodes.vector(node, BVH_LOW, slot), bvh.nodes.vector(node, BVH_HIGH, slot)};
 }
 
 bool contains(const Imath::Box3f& outer, const Imath::Box3f& inner) {
@@ -34,16 +36,16 @@ void expect_sound(const Bvh& bvh, const TriangleSoup& soup) {
             const auto index = static_cast<std::size_t>(~reference);
             ASSERT_LT(index, bvh.leaves.size());
             ++seen_leaves[index];
-            const BvhLeaf& leaf = bvh.leaves[index];
-            for (int lane = 0; lane < 8; ++lane) {
-                const V3f v0(leaf.v0_x[lane], leaf.v0_y[lane], leaf.v0_z[lane]);
-                const V3f v1(leaf.v1_x[lane], leaf.v1_y[lane], leaf.v1_z[lane]);
-                const V3f v2(leaf.v2_x[lane], leaf.v2_y[lane], leaf.v2_z[lane]);
-                if (leaf.id[lane] < 0) {
+            for (std::size_t lane = 0; lane < bvh.leaves.width(); ++lane) {
+                const V3f v0 = bvh.leaves.vector(index, BVH_V0, lane);
+                const V3f v1 = bvh.leaves.vector(index, BVH_V1, lane);
+                const V3f v2 = bvh.leaves.vector(index, BVH_V2, lane);
+                const int id = bvh.leaves.integer(index, BVH_ID, lane);
+                if (id < 0) {
                     EXPECT_TRUE(v0 == v1 && v1 == v2);
                     continue;
                 }
-                const auto triangle = static_cast<std::size_t>(leaf.id[lane]);
+                const auto triangle = static_cast<std::size_t>(id);
                 ASSERT_LT(triangle, soup.v0.size());
                 ++seen_triangles[triangle];
                 EXPECT_TRUE(v0 == soup.v0[triangle] && v1 == soup.v1[triangle] && v2 == soup.v2[triangle]);
@@ -55,12 +57,12 @@ void expect_sound(const Bvh& bvh, const TriangleSoup& soup) {
         const auto index = static_cast<std::size_t>(reference);
         ASSERT_LT(index, bvh.nodes.size());
         ++seen_nodes[index];
-        for (int slot = 0; slot < 8; ++slot) {
-            const Imath::Box3f child = slot_box(bvh.nodes[index], slot);
+        for (std::size_t slot = 0; slot < bvh.nodes.width(); ++slot) {
+            const Imath::Box3f child = slot_box(bvh, index, slot);
             if (child.isEmpty())
                 continue;
             EXPECT_TRUE(contains(box, child));
-            walk(bvh.nodes[index].child[slot], child);
+            walk(bvh.nodes.integer(index, BVH_CHILD, slot), child);
         }
     };
     Imath::Box3f everything;
@@ -76,14 +78,14 @@ int worst_stack(const Bvh& bvh) {
     const std::function<int(int)> worst = [&](int reference) {
         if (reference < 0)
             return 0;
-        const BvhNode& node = bvh.nodes[static_cast<std::size_t>(reference)];
+        const auto node = static_cast<std::size_t>(reference);
         int pushed = 0;
         int below = 0;
-        for (int slot = 0; slot < 8; ++slot) {
-            if (slot_box(node, slot).isEmpty())
+        for (std::size_t slot = 0; slot < bvh.nodes.width(); ++slot) {
+            if (slot_box(bvh, node, slot).isEmpty())
                 continue;
             ++pushed;
-            below = std::max(below, worst(node.child[slot]));
+            below = std::max(below, worst(bvh.nodes.integer(node, BVH_CHILD, slot)));
         }
         return pushed == 0 ? 0 : pushed - 1 + below; // the traversal goes on with one, the others wait
     };
@@ -91,9 +93,7 @@ int worst_stack(const Bvh& bvh) {
 }
 
 bool same_bytes(const Bvh& a, const Bvh& b) {
-    return a.nodes.size() == b.nodes.size() && a.leaves.size() == b.leaves.size() && a.stack_size == b.stack_size &&
-           std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BvhNode)) == 0 &&
-           std::memcmp(a.leaves.data(), b.leaves.data(), a.leaves.size() * sizeof(BvhLeaf)) == 0;
+    return a.stack_size == b.stack_size && a.nodes.words() == b.nodes.words() && a.leaves.words() == b.leaves.words();
 }
 
 /// Triangles around one point that halve in size: a tree as deep as it gets.
@@ -114,6 +114,15 @@ TriangleSoup coincident_triangles() {
     return soup;
 }
 
+void expect_sound_trees(const TriangleSoup& soup) {
+    for (const int width : widths) {
+        SCOPED_TRACE(fmt::format("width {}", width));
+        const Bvh bvh = build_bvh(soup, width);
+        expect_sound(bvh, soup);
+        EXPECT_EQ(bvh.stack_size, worst_stack(bvh));
+    }
+}
+
 TEST(BvhBuild, EveryTriangleIsReachedOnceWithinItsBoxes) {
     for (const int count : {1, 8, 9, 1000}) {
         SCOPED_TRACE(count);
@@ -121,65 +130,67 @@ TEST(BvhBuild, EveryTriangleIsReachedOnceWithinItsBoxes) {
         TriangleSoup soup;
         for (int i = 0; i < count; ++i)
             add(soup, random.in_cube(1.0f), random.in_cube(1.0f), random.in_cube(1.0f));
-        const Bvh bvh = build_bvh(soup);
-        expect_sound(bvh, soup);
-        EXPECT_EQ(bvh.stack_size, worst_stack(bvh));
+        expect_sound_trees(soup);
     }
-    const BenchMesh mesh = bumpy_spheres_in_room("spheres", 20000);
-    const Bvh bvh = build_bvh(mesh.triangles);
-    expect_sound(bvh, mesh.triangles);
-    EXPECT_EQ(bvh.stack_size, worst_stack(bvh));
+    expect_sound_trees(bumpy_spheres_in_room("spheres", 20000).triangles);
 }
 
-TEST(BvhBuild, UpToEightTrianglesAreOneBlock) {
-    const TriangleSoup soup = bumpy_sphere(0, V3f(0.0f), 1.0f);
+TEST(BvhBuild, AsManyTrianglesAsTheTreeIsWideAreOneBlock) {
+    TriangleSoup soup = bumpy_sphere(0, V3f(0.0f), 1.0f);
     ASSERT_EQ(soup.v0.size(), 8u);
-    const Bvh bvh = build_bvh(soup);
-    EXPECT_EQ(bvh.nodes.size(), 1u);
-    EXPECT_EQ(bvh.leaves.size(), 1u);
+    for (const int width : widths) {
+        for (auto* vertices : {&soup.v0, &soup.v1, &soup.v2})
+            vertices->resize(static_cast<std::size_t>(width));
+        const Bvh bvh = build_bvh(soup, width);
+        EXPECT_EQ(bvh.nodes.size(), 1u);
+        EXPECT_EQ(bvh.leaves.size(), 1u);
+    }
 }
 
 TEST(BvhBuild, BlocksAreWellFilled) {
     const BenchMesh mesh = bumpy_spheres_in_room("spheres", 100'000);
-    const Bvh bvh = build_bvh(mesh.triangles);
-    // A plain eight-way build fills 45 % of the lanes; the collapse is there to do better.
-    EXPECT_GT(static_cast<double>(mesh.triangles.v0.size()) / (8.0 * static_cast<double>(bvh.leaves.size())), 0.6);
+    for (const int width : {8, 4}) {
+        const Bvh bvh = build_bvh(mesh.triangles, width);
+        // A plain eight-way build fills 45 % of the lanes; the collapse is there to do better.
+        EXPECT_GT(static_cast<double>(mesh.triangles.v0.size()) / (width * static_cast<double>(bvh.leaves.size())),
+                  0.6);
+    }
 }
 
 TEST(BvhBuild, DoesNotDependOnThreads) {
     const std::vector<TriangleSoup> soups{bumpy_spheres_in_room("spheres", 100'000).triangles, nested_triangles(),
                                           coincident_triangles()};
     for (const TriangleSoup& soup : soups) {
-        const Bvh one = build_bvh(soup, 1);
-        EXPECT_TRUE(same_bytes(one, build_bvh(soup, 2)));
-        EXPECT_TRUE(same_bytes(one, build_bvh(soup, 0)));
+        const Bvh one = build_bvh(soup, 8, 1);
+        EXPECT_TRUE(same_bytes(one, build_bvh(soup, 8, 2)));
+        EXPECT_TRUE(same_bytes(one, build_bvh(soup, 8, 0)));
     }
 }
 
 TEST(BvhBuild, PathologicalTreesAreSoundAndTraversable) {
     for (const TriangleSoup& soup : {nested_triangles(), coincident_triangles()}) {
-        const Bvh bvh = build_bvh(soup);
-        expect_sound(bvh, soup);
-        EXPECT_EQ(bvh.stack_size, worst_stack(bvh));
+        expect_sound_trees(soup);
         Random random(1);
         std::vector<Ray> rays;
         for (int i = 0; i < 200; ++i) {
             const V3f origin = random.in_cube(4.0f);
             rays.push_back(make_ray(origin, (0.01f * random.in_cube(1.0f) - origin).normalized()));
         }
-        const std::vector<RayHit> hits = RayTracer(open_device(""), bvh).trace_closest(rays);
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            EXPECT_EQ(check_hit(soup, rays[i], hits[i]), "") << "ray " << i;
+        for (const int width : {8, 4}) {
+            const std::vector<RayHit> hits = RayTracer(open_device(""), build_bvh(soup, width)).trace_closest(rays);
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                EXPECT_EQ(check_hit(soup, rays[i], hits[i]), "") << "ray " << i << ", width " << width;
+        }
     }
 }
 
 TEST(BvhBuild, NoTrianglesMakeAnEmptyRoot) {
     const Bvh bvh = build_bvh({});
     ASSERT_EQ(bvh.nodes.size(), 1u);
-    EXPECT_TRUE(bvh.leaves.empty());
+    EXPECT_EQ(bvh.leaves.size(), 0u);
     EXPECT_EQ(bvh.stack_size, 0);
-    for (int slot = 0; slot < 8; ++slot)
-        EXPECT_TRUE(slot_box(bvh.nodes[0], slot).isEmpty());
+    for (std::size_t slot = 0; slot < bvh.nodes.width(); ++slot)
+        EXPECT_TRUE(slot_box(bvh, 0, slot).isEmpty());
 }
 
 TEST(BvhBuild, RejectsCoordinatesThatItCannotHandle) {
@@ -188,6 +199,11 @@ TEST(BvhBuild, RejectsCoordinatesThatItCannotHandle) {
         add(soup, V3f(0.0f), V3f(1.0f), V3f(0.0f, bad, 0.0f));
         EXPECT_THROW(build_bvh(soup), Error);
     }
+}
+
+TEST(BvhBuild, RejectsWidthsThatKernelsCannotTake) {
+    for (const int width : {16, 7, 3, 1, 0, -8})
+        EXPECT_THROW(build_bvh({}, width), Error) << width;
 }
 
 } // namespace

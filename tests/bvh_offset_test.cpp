@@ -38,8 +38,8 @@ std::vector<V3f> offset_hits(const Device& device, const TriangleSoup& soup, con
     ::cl::Program program(device.context, flatten_kernel_source("bvh.h") + probe);
     program.build(device.device, "-cl-std=CL1.2");
     ::cl::Kernel kernel(program, "probe_offset");
-    const Buffer<BvhNode> nodes(device, "nodes", bvh.nodes);
-    const Buffer<BvhLeaf> leaves(device, "leaves", bvh.leaves);
+    const Buffer<std::uint32_t> nodes(device, "nodes", bvh.nodes.words());
+    const Buffer<std::uint32_t> leaves(device, "leaves", bvh.leaves.words());
     const Buffer<Ray> ray_buffer(device, "rays", rays);
     const Buffer<float> vertices(device, "vertices", corners);
     const Buffer<float> points(device, "points", 3 * rays.size());

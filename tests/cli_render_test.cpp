@@ -175,8 +175,11 @@ TEST_F(CliRender, StatsHoldEverything) {
     EXPECT_EQ(stats.at("passes"), 4);
     EXPECT_EQ(stats.at("photons_per_pass"), 1024);
     EXPECT_EQ(stats.at("non_finite_samples"), 0);
-    EXPECT_NE(stats.at("device"), "");
-    EXPECT_NE(stats.at("driver"), "");
+    ASSERT_EQ(stats.at("devices").size(), 1U);
+    for (const char* of_device : {"name", "platform", "driver"})
+        EXPECT_NE(stats.at("devices")[0].at(of_device), "");
+    EXPECT_EQ(stats.at("devices")[0].at("passes"), 4);
+    EXPECT_EQ(stats.at("devices")[0].at("failure"), "");
     const nlohmann::json& seconds = stats.at("seconds");
     double steps = 0.0;
     for (const char* step : {"wavelengths", "eye", "photon", "grid", "gather", "film"}) {

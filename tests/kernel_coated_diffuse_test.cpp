@@ -101,7 +101,8 @@ std::vector<float> filled_table(const CoatedSurface& surface, const PerWavelengt
         value = name == "HAS_ABSORBING_FILM" && !absorbing ? "0" : value;
     Buffer<float> table = upload(pass_table_of(surface, reflectance));
     run(build_test_program("#include \"film_tables.cl\"\n", macros), "film_tables", 2,
-        upload(std::vector{material_of(surface)}), upload(layers_of(surface)), 1, table);
+        upload(std::vector{material_of(surface)}), upload(layers_of(surface)), 1, table,
+        make_buffer<cl_uint>(2 * NON_FINITE_COUNTS));
     return table.read(test_device());
 }
 
@@ -146,7 +147,8 @@ kernel void interpolate(const global SurfaceMaterial* material, const global flo
                                                          interface_macros());
         const Buffer<float> filled = upload(table);
         const Buffer<SurfaceMaterial> materials = upload(std::vector{material});
-        run(program, "film_tables", 2 * rows, materials, upload(layers_of(surface)), rows, filled);
+        run(program, "film_tables", 2 * rows, materials, upload(layers_of(surface)), rows, filled,
+            make_buffer<cl_uint>(2 * NON_FINITE_COUNTS));
         std::vector<float> thicknesses{16.0F, 18.0F, 998.0F, 1000.0F};
         Random random(7);
         for (int i = 0; i < 24; ++i)

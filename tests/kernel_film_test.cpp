@@ -45,30 +45,78 @@ VisiblePoint direct_only(float x, float y, float z) {
     return point;
 }
 
-/// The film's own function, looped on the device: a million additions to one pixel.
+/// The film's own functions, looped on the device: a million additions to one pixel.
 TEST_F(KernelFilm, MillionAdditionsLoseNothing) {
     const ::cl::Program program = build_test_program(R"(
 #include "film.cl"
-kernel void add_many(uint count, float even, float odd, global float* high, global float* low) {
-    *high = *low = 0.0f;
-    for (uint i = 0; i < count; ++i)
-        add_compensated(high, low, (i & 1u) ? odd : even);
+// two: high and low part; three: high, middle and low. Three sums alike.
+kernel void add_many(uint count, float even, float odd, global float* two, global float* three) {
+    float3 high = 0.0f, low = 0.0f, first = 0.0f, second = 0.0f, third = 0.0f;
+    for (uint i = 0; i < count; ++i) {
+        add_compensated(&high, &low, (float3)((i & 1u) ? odd : even));
+        add_to_sum(&first, &second, &third, (float3)((i & 1u) ? odd : even));
+    }
+    two[0] = high.x;
+    two[1] = low.y;
+    three[0] = first.x;
+    three[1] = second.y;
+    three[2] = third.z;
 }
 )");
     constexpr std::uint32_t count = 1000000;
     constexpr std::array<std::array<float, 2>, 3> samples{{{0.1F, 0.1F}, {1234.5F, 0.007F}, {1.7e-4F, 3.3e-6F}}};
     for (const auto& [even, odd] : samples) {
-        const Buffer<float> high = make_buffer<float>(1), low = make_buffer<float>(1);
-        run(program, "add_many", 1, cl_uint{count}, even, odd, high, low);
+        const Buffer<float> two = upload(std::vector<float>(2)), three = upload(std::vector<float>(3));
+        run(program, "add_many", 1, cl_uint{count}, even, odd, two, three);
         float plain = 0.0F;
         for (std::uint32_t i = 0; i < count; ++i)
             plain += i % 2 == 0 ? even : odd;
         const double expected = 0.5 * count * (double{even} + odd);
-        const double sum = double{high.read(test_device())[0]} + low.read(test_device())[0];
-        // High and low part hold 48 bits: each addition loses at most 2^-48 of the sum, a million of them 4e-9.
-        constexpr double tolerance = 4e-9;
-        EXPECT_NEAR(sum / expected, 1.0, tolerance) << "samples of " << even << " and " << odd;
+        const std::vector<float> pair = two.read(test_device()), triple = three.read(test_device());
+        // Two parts hold 48 bits: each addition loses at most 2^-48 of the sum, a million of them 4e-9.
+        EXPECT_NEAR((double{pair[0]} + pair[1]) / expected, 1.0, 4e-9) << "samples of " << even << " and " << odd;
+        // Three parts lose less than this double can show; the terms' sum is rounded once.
+        EXPECT_NEAR((double{triple[0]} + (double{triple[1]} + triple[2])) / expected, 1.0, 3e-16);
         EXPECT_GT(std::abs(plain / expected - 1.0), 1e-4) << "the test is too easy: a plain sum does as well";
+    }
+}
+
+/// Samples of many sizes and both signs in one order, and shared out among films, in other orders, that are added up:
+/// every bit of the means is the same.
+TEST_F(KernelFilm, OrderAndSharingDoNotShow) {
+    build(false);
+    constexpr std::size_t pixels = 256, passes = 120;
+    Random random(41);
+    std::vector<std::vector<VisiblePoint>> samples(passes);
+    for (auto& points : samples) {
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const float size = std::exp2(static_cast<float>(i % 32) * (random() - 0.5F));
+            points.push_back(direct_only(size * random(), i % 2 == 0 ? size : size * (random() - 0.5F), -size));
+        }
+    }
+    const std::vector<cl_float4> dark(pixels);
+    const std::vector<float> radii(pixels, 1.0F);
+    const Buffer<FilmPixel> whole = cleared(radii);
+    for (const auto& points : samples)
+        add(points, dark, whole);
+    const FilmImage expected = develop_film(whole.read(test_device()), 16, 16, {0, 0, 16, 16});
+
+    const std::array<Buffer<FilmPixel>, 3> parts{cleared(radii), cleared(radii), cleared(radii)};
+    for (std::size_t pass = passes; pass-- > 0;)
+        add(samples[pass], dark, parts[pass * pass % 3 == 0 ? pass % 2 : 2]);
+    std::vector<FilmPixel> sum = parts[2].read(test_device());
+    for (const std::size_t part : {1, 0})
+        add_film(sum, parts[part].read(test_device()));
+    const FilmImage shared = develop_film(sum, 16, 16, {0, 0, 16, 16});
+    EXPECT_EQ(shared.passes, passes);
+    EXPECT_EQ(shared.xyz, expected.xyz);
+    // A difference of mean squares, each within 2^-47.
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double mean = expected.xyz[i][c];
+            EXPECT_NEAR(shared.variance[i][c], expected.variance[i][c],
+                        0x1p-45 * mean * mean + 2.0 * unit_roundoff * expected.variance[i][c]);
+        }
     }
 }
 

@@ -26,17 +26,6 @@ struct Field {
 /// The last field of each struct and one after each change of meaning: an offset that is right there is right between.
 const std::vector<Field>& fields() {
     static const std::vector<Field> list{
-        FIELD(BvhNode, low_x),
-        FIELD(BvhNode, low_z),
-        FIELD(BvhNode, high_x),
-        FIELD(BvhNode, high_z),
-        FIELD(BvhNode, child),
-        FIELD(BvhNode, unused),
-        FIELD(BvhLeaf, v0_x),
-        FIELD(BvhLeaf, v1_x),
-        FIELD(BvhLeaf, v2_x),
-        FIELD(BvhLeaf, v2_z),
-        FIELD(BvhLeaf, id),
         FIELD(Ray, origin_x),
         FIELD(Ray, t_max),
         FIELD(Ray, direction_x),
@@ -112,6 +101,7 @@ const std::vector<Field>& fields() {
         FIELD(PhotonSurface, side),
         FIELD(PhotonSurface, incident),
         FIELD(FilmPixel, sum_high),
+        FIELD(FilmPixel, sum_middle),
         FIELD(FilmPixel, sum_low),
         FIELD(FilmPixel, square_high),
         FIELD(FilmPixel, square_low),
@@ -125,31 +115,68 @@ const std::vector<Field>& fields() {
 
 #undef FIELD
 
-TEST(SharedTypes, HaveTheSameLayoutOnTheDevice) {
+/// The same of the BVH's structs, whose rows are `width` values long.
+std::vector<Field> bvh_fields(std::size_t width) {
+    const auto row = [width](int rows) { return sizeof(float) * width * static_cast<std::size_t>(rows); };
+    const auto node = [&](const char* name, int number) {
+        return Field{"BvhNode", name, row(BVH_NODE_ROWS), row(number)};
+    };
+    const auto leaf = [&](const char* name, int number) {
+        return Field{"BvhLeaf", name, row(BVH_LEAF_ROWS), row(number)};
+    };
+    return {node("low_x", BVH_LOW),
+            node("low_y", BVH_LOW + 1),
+            node("low_z", BVH_LOW + 2),
+            node("high_x", BVH_HIGH),
+            node("high_y", BVH_HIGH + 1),
+            node("high_z", BVH_HIGH + 2),
+            node("child", BVH_CHILD),
+            leaf("v0_x", BVH_V0),
+            leaf("v0_y", BVH_V0 + 1),
+            leaf("v0_z", BVH_V0 + 2),
+            leaf("v1_x", BVH_V1),
+            leaf("v1_y", BVH_V1 + 1),
+            leaf("v1_z", BVH_V1 + 2),
+            leaf("v2_x", BVH_V2),
+            leaf("v2_y", BVH_V2 + 1),
+            leaf("v2_z", BVH_V2 + 2),
+            leaf("id", BVH_ID)};
+}
+
+void expect_layout(const std::vector<Field>& fields, const std::string& build_options) {
     std::string source = flatten_kernel_source("shared_types.h") + "kernel void probe_layout(global uint* sizes, "
                                                                    "global uint* offsets) {\n";
-    for (std::size_t i = 0; i < fields().size(); ++i)
+    for (std::size_t i = 0; i < fields.size(); ++i)
         source += fmt::format("    {{ {0} s; sizes[{2}] = (uint)sizeof(s); offsets[{2}] = (uint)((char*)&s.{1} - "
                               "(char*)&s); }}\n",
-                              fields()[i].type, fields()[i].name, i);
+                              fields[i].type, fields[i].name, i);
     source += "}\n";
 
     const Device device = open_device("");
     ::cl::Program program(device.context, source);
-    ASSERT_NO_THROW(program.build(device.device, "-cl-std=CL1.2"))
+    ASSERT_NO_THROW(program.build(device.device, ("-cl-std=CL1.2" + build_options).c_str()))
         << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device);
-    const Buffer<cl_uint> sizes(device, "sizes", fields().size());
-    const Buffer<cl_uint> offsets(device, "offsets", fields().size());
+    const Buffer<cl_uint> sizes(device, "sizes", fields.size());
+    const Buffer<cl_uint> offsets(device, "offsets", fields.size());
     ::cl::Kernel kernel(program, "probe_layout");
     kernel.setArg(0, sizes.cl());
     kernel.setArg(1, offsets.cl());
     device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(1));
     const std::vector<cl_uint> device_sizes = sizes.read(device);
     const std::vector<cl_uint> device_offsets = offsets.read(device);
-    for (std::size_t i = 0; i < fields().size(); ++i) {
-        EXPECT_EQ(device_sizes[i], fields()[i].struct_size) << fields()[i].type;
-        EXPECT_EQ(device_offsets[i], fields()[i].offset) << fields()[i].type << "." << fields()[i].name;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        EXPECT_EQ(device_sizes[i], fields[i].struct_size) << fields[i].type;
+        EXPECT_EQ(device_offsets[i], fields[i].offset) << fields[i].type << "." << fields[i].name;
     }
+}
+
+TEST(SharedTypes, HaveTheSameLayoutOnTheDevice) {
+    expect_layout(fields(), "");
+}
+
+TEST(SharedTypes, RowsOfTheBvhLieWhereTheHostPutsThem) {
+    for (const std::size_t width : {8U, 4U, 2U})
+        expect_layout(bvh_fields(width), fmt::format(" -D BVH_WIDTH={}", width));
 }
 
 } // namespace

@@ -38,7 +38,7 @@ Contestant::Contestant(Renderer renderer, std::vector<double> times, double tria
     repeat_.seed = renderer_.options().seed;
     repeat_.method = renderer_.options().method.name();
     repeat_.trial_seconds = trial_seconds;
-    repeat_.build_seconds = renderer_.statistics().build_kernels_seconds;
+    repeat_.build_seconds = renderer_.statistics().build_kernels_seconds + renderer_.statistics().pilot_seconds;
 }
 
 void Contestant::render(double slice) {

@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "bvh/binary_tree.h"
 
 #include <algorithm>
@@ -5,21 +6,21 @@
 #include <cstdint>
 #include <limits>
 
-// Collapse of a binary tree into an eight-wide one with the least expected cost: Ylitie, Karras & Laine 2017,
+// Collapse of a binary tree into a wide one with the least expected cost: Ylitie, Karras & Laine 2017,
 // "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2, equations 1-6. C(n, i) is the
-// least cost of representing the subtree at n by at most i siblings. Unlike theirs, a leaf is one block of eight
-// triangles that costs the same however full it is.
+// least cost of representing the subtree at n by at most i siblings. Unlike theirs, a leaf is one block of as many
+// triangles as a node has children, which costs the same however full it is.
 
 namespace tristim {
 namespace {
 
-constexpr int width = 8;
-constexpr float leaf_cost = 1.0f; ///< testing eight triangles, where testing eight boxes costs 1; measured
+constexpr int largest_width = 8;
+constexpr float leaf_cost = 1.0f; ///< testing a leaf's triangles, where testing a node's boxes costs 1; measured
 
 /// The best ways to represent one binary subtree.
 struct Choice {
-    std::array<float, width> cost{}; ///< cost[i]: as at most i siblings, i ≥ 1
-    std::array<std::uint8_t, width + 1>
+    std::array<float, largest_width> cost{}; ///< cost[i]: as at most i siblings, i ≥ 1
+    std::array<std::uint8_t, largest_width + 1>
         left{};            ///< left[i]: how many of i siblings the left child gets; 0: i-1 are as good
     bool one_leaf = false; ///< as one sibling: a leaf rather than a node
 };
@@ -35,7 +36,8 @@ float half_area(const Imath::Box3f& box) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-std::vector<Choice> choose(const Tree& tree) {
+std::vector<Choice> choose(const Tree& tree, int tree_width) {
+    const auto width = static_cast<std::size_t>(tree_width);
     std::vector<Choice> choices(tree.size());
     const float root_area = half_area(tree[0].box);
     const float scale = root_area > 0.0f ? 1.0f / root_area : 1.0f;
@@ -43,7 +45,8 @@ std::vector<Choice> choose(const Tree& tree) {
         const BinaryNode& node = tree[n];
         Choice& choice = choices[n];
         const float area = scale * half_area(node.box);
-        const float as_leaf = node.triangle_count <= width ? leaf_cost * area : std::numeric_limits<float>::infinity();
+        const float as_leaf =
+            node.triangle_count <= tree_width ? leaf_cost * area : std::numeric_limits<float>::infinity();
         if (node.is_leaf()) {
             choice.cost.fill(as_leaf);
             choice.one_leaf = true;
@@ -51,7 +54,7 @@ std::vector<Choice> choose(const Tree& tree) {
         }
         const Choice& left = choices[static_cast<std::size_t>(node.left)];
         const Choice& right = choices[static_cast<std::size_t>(node.right)];
-        std::array<float, width + 1> distributed;
+        std::array<float, largest_width + 1> distributed;
         for (std::size_t i = 2; i <= width; ++i) {
             distributed[i] = std::numeric_limits<float>::infinity();
             for (std::size_t k = 1; k < i; ++k) {
@@ -89,46 +92,31 @@ void gather_children(const Tree& tree, const std::vector<Choice>& choices, int n
     gather_children(tree, choices, at(tree, n).right, siblings - to_left, children);
 }
 
-BvhNode empty_node() {
-    constexpr float far_away = 1e18f; // products with the inverse direction, at most 1e18, stay finite
-    BvhNode node{};
-    std::fill(std::begin(node.low_x), std::end(node.low_x), far_away);
-    std::fill(std::begin(node.low_y), std::end(node.low_y), far_away);
-    std::fill(std::begin(node.low_z), std::end(node.low_z), far_away);
-    std::fill(std::begin(node.high_x), std::end(node.high_x), -far_away);
-    std::fill(std::begin(node.high_y), std::end(node.high_y), -far_away);
-    std::fill(std::begin(node.high_z), std::end(node.high_z), -far_away);
-    return node;
+void append_empty_node(Bvh& bvh) {
+    const V3f far_away(1e18f); // products with the inverse direction, at most 1e18, stay finite
+    const std::size_t index = bvh.nodes.size();
+    bvh.nodes.append();
+    for (std::size_t slot = 0; slot < bvh.nodes.width(); ++slot) {
+        bvh.nodes.set(index, BVH_LOW, slot, far_away);
+        bvh.nodes.set(index, BVH_HIGH, slot, -far_away);
+    }
 }
 
-void set_box(BvhNode& node, std::size_t slot, const Imath::Box3f& box) {
-    node.low_x[slot] = box.min.x;
-    node.low_y[slot] = box.min.y;
-    node.low_z[slot] = box.min.z;
-    node.high_x[slot] = box.max.x;
-    node.high_y[slot] = box.max.y;
-    node.high_z[slot] = box.max.z;
-}
-
-BvhLeaf make_leaf(const Tree& tree, int root, const TriangleSoup& triangles) {
-    BvhLeaf leaf{};
-    std::fill(std::begin(leaf.id), std::end(leaf.id), -1);
+void append_leaf(const Tree& tree, int root, const TriangleSoup& triangles, Bvh& bvh) {
+    const std::size_t index = bvh.leaves.size();
+    bvh.leaves.append();
     std::size_t lane = 0;
     // In depth-first order the subtree is contiguous.
     for (int n = root, remaining = at(tree, root).triangle_count; remaining > 0; ++n) {
         if (!at(tree, n).is_leaf())
             continue;
         --remaining;
-        const auto triangle = static_cast<std::size_t>(at(tree, n).triangle);
-        const V3f& v0 = triangles.v0[triangle];
-        const V3f& v1 = triangles.v1[triangle];
-        const V3f& v2 = triangles.v2[triangle];
-        leaf.v0_x[lane] = v0.x, leaf.v0_y[lane] = v0.y, leaf.v0_z[lane] = v0.z;
-        leaf.v1_x[lane] = v1.x, leaf.v1_y[lane] = v1.y, leaf.v1_z[lane] = v1.z;
-        leaf.v2_x[lane] = v2.x, leaf.v2_y[lane] = v2.y, leaf.v2_z[lane] = v2.z;
-        leaf.id[lane++] = static_cast<int>(triangle);
+        const int triangle = at(tree, n).triangle;
+        const auto i = static_cast<std::size_t>(triangle);
+        set_triangle(bvh.leaves, index, lane++, {triangles.v0[i], triangles.v1[i], triangles.v2[i]}, triangle);
     }
-    return leaf;
+    for (; lane < bvh.leaves.width(); ++lane)
+        bvh.leaves.set(index, BVH_ID, lane, -1);
 }
 
 /// Fills the wide node for the subtree at n, depth first, and returns the stack entries that traversing it can need.
@@ -137,19 +125,20 @@ int append_node(const Tree& tree, const std::vector<Choice>& choices, int n, std
     std::vector<int> children;
     gather_children(tree, choices, n, siblings, children);
     const std::size_t index = bvh.nodes.size();
-    bvh.nodes.push_back(empty_node());
+    append_empty_node(bvh);
     // The traversal goes on with one child; the others wait on the stack.
     const int waiting = static_cast<int>(children.size()) - 1;
     int needed = waiting;
     for (std::size_t slot = 0; slot < children.size(); ++slot) {
         const int child = children[slot];
-        set_box(bvh.nodes[index], slot, at(tree, child).box);
+        bvh.nodes.set(index, BVH_LOW, slot, at(tree, child).box.min);
+        bvh.nodes.set(index, BVH_HIGH, slot, at(tree, child).box.max);
         if (choices[static_cast<std::size_t>(child)].one_leaf) {
-            bvh.nodes[index].child[slot] = ~static_cast<int>(bvh.leaves.size());
-            bvh.leaves.push_back(make_leaf(tree, child, triangles));
+            bvh.nodes.set(index, BVH_CHILD, slot, ~static_cast<int>(bvh.leaves.size()));
+            append_leaf(tree, child, triangles, bvh);
         } else {
-            bvh.nodes[index].child[slot] = static_cast<int>(bvh.nodes.size());
-            needed = std::max(needed, waiting + append_node(tree, choices, child, width, triangles, bvh));
+            bvh.nodes.set(index, BVH_CHILD, slot, static_cast<int>(bvh.nodes.size()));
+            needed = std::max(needed, waiting + append_node(tree, choices, child, bvh.nodes.width(), triangles, bvh));
         }
     }
     return needed;
@@ -157,15 +146,18 @@ int append_node(const Tree& tree, const std::vector<Choice>& choices, int n, std
 
 } // namespace
 
-Bvh build_bvh(const TriangleSoup& triangles, unsigned threads) {
-    Bvh bvh;
+Bvh build_bvh(const TriangleSoup& triangles, int width, unsigned threads) {
+    if (width != 8 && width != 4 && width != 2)
+        fail("a BVH may be 8, 4 or 2 wide, not {}", width);
+    Bvh bvh(width);
     const Tree tree = build_binary_tree(triangles, threads);
     if (tree.empty()) {
-        bvh.nodes.push_back(empty_node());
+        append_empty_node(bvh);
         return bvh;
     }
-    const std::vector<Choice> choices = choose(tree);
-    bvh.stack_size = append_node(tree, choices, 0, choices[0].one_leaf ? 1 : width, triangles, bvh);
+    const std::vector<Choice> choices = choose(tree, width);
+    const std::size_t siblings = choices[0].one_leaf ? 1 : bvh.nodes.width();
+    bvh.stack_size = append_node(tree, choices, 0, siblings, triangles, bvh);
     return bvh;
 }
 

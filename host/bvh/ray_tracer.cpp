@@ -1,19 +1,16 @@
 #include "bvh/ray_tracer.h"
 
 namespace tristim {
-namespace {
-
-constexpr std::size_t work_group_size = 64;
-
-} // namespace
 
 Macros traversal_macros(const Bvh& bvh) {
     constexpr int step = 32;
-    return {{"BVH_STACK_SIZE", std::to_string((bvh.stack_size / step + 1) * step)}};
+    return {{"BVH_WIDTH", std::to_string(bvh.width)},
+            {"BVH_STACK_SIZE", std::to_string((bvh.stack_size / step + 1) * step)}};
 }
 
 RayTracer::RayTracer(const Device& device, const Bvh& bvh, const BuildOptions& options)
-    : device_(device), nodes_(device, "BVH nodes", bvh.nodes), leaves_(device, "BVH leaves", bvh.leaves) {
+    : device_(device), nodes_(device, "BVH nodes", bvh.nodes.words()),
+      leaves_(device, "BVH leaves", bvh.leaves.words()) {
     const ::cl::Program program = build_program(device, "trace_rays.cl", traversal_macros(bvh), options);
     closest_ = ::cl::Kernel(program, "trace_closest");
     any_ = ::cl::Kernel(program, "trace_any");
@@ -37,8 +34,9 @@ void RayTracer::run(::cl::Kernel& kernel, const ::cl::Buffer& results) {
     kernel.setArg(2, rays_.cl());
     kernel.setArg(3, results);
     kernel.setArg(4, static_cast<cl_uint>(ray_count_));
-    const std::size_t padded = (ray_count_ + work_group_size - 1) / work_group_size * work_group_size;
-    device_.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(padded), ::cl::NDRange(work_group_size));
+    const std::size_t group = device_.tuning.pixel_group;
+    const std::size_t padded = (ray_count_ + group - 1) / group * group;
+    device_.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(padded), ::cl::NDRange(group));
     device_.queue.finish();
 }
 

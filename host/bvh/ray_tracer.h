@@ -32,8 +32,8 @@ class RayTracer {
     void run(::cl::Kernel& kernel, const ::cl::Buffer& results);
 
     Device device_;
-    Buffer<BvhNode> nodes_;
-    Buffer<BvhLeaf> leaves_;
+    Buffer<std::uint32_t> nodes_;
+    Buffer<std::uint32_t> leaves_;
     Buffer<Ray> rays_;
     Buffer<RayHit> hits_;
     Buffer<std::int32_t> occluded_;

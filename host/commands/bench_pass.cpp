@@ -4,6 +4,7 @@
 #include "base/median.h"
 #include "base/stopwatch.h"
 #include "bvh/ray_tracer.h"
+#include "commands/device_options.h"
 #include "commands/render_arguments.h"
 #include "render/renderer.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct BenchPassCommand {
     RenderArguments arguments;
+    std::string tuning;
     int repeats = 32;
     bool json = false;
 };
@@ -78,7 +80,7 @@ void run(const BenchPassCommand& command) {
         fail("--repeats must be at least 1");
     const Scene scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
     const RenderOptions options = resolve_options(command.arguments, scene);
-    const Device device = open_device(command.arguments.device);
+    const Device device = open_tuned_device(command.arguments.device, command.tuning);
     // The number of rays hardly changes between passes: those of the middle one serve for all.
     const PassRays rays = record_pass(scene, options, device, static_cast<std::uint32_t>(command.repeats / 2));
     Renderer renderer(scene, options, device);
@@ -91,6 +93,8 @@ void run(const BenchPassCommand& command) {
     const std::uint64_t renders = renderer.statistics().passes;
     const RayTotals totals = renderer.rays();
     nlohmann::ordered_json json;
+    json["device"] = device.info.name;
+    json["tuning"] = to_string(device.tuning);
     json["pass_ms"] = measured.pass;
     json["rays_alone_ms"] = measured.rays_alone;
     json["ratio"] = measured.ratio;
@@ -123,6 +127,7 @@ void add_bench_pass_command(CLI::App& app) {
     auto command = std::make_shared<BenchPassCommand>();
     CLI::App* sub = app.add_subcommand("bench-pass", "Time a pass by step, beside its rays alone");
     add_render_arguments(*sub, command->arguments);
+    add_tuning_option(*sub, command->tuning);
     sub->add_option("--repeats", command->repeats, "Passes to time, from the first on; medians count")
         ->capture_default_str();
     sub->add_flag("--json", command->json, "Print JSON");

@@ -23,6 +23,7 @@ namespace {
 struct Options {
     bool json = false;
     std::string device;
+    std::string tuning;
     int repeats = 9;
     int rays = 262144;
 };
@@ -175,8 +176,8 @@ struct Contest {
     unsigned threads;
 
     Contest(const Device& device, const TriangleSoup& triangles)
-        : tristim(device, build_bvh(triangles)), embree(triangles, false), robust(triangles, true),
-          threads(device.info.compute_units) {}
+        : tristim(device, build_bvh(triangles, device.tuning.bvh_width)), embree(triangles, false),
+          robust(triangles, true), threads(device.info.compute_units) {}
 };
 
 /// Times the three in turn, `repeats` times after a warm-up, and compares our results with Embree's robust mode.
@@ -265,7 +266,7 @@ void print_json(const std::vector<Result>& results) {
 }
 
 void bench_rays(const Options& options) {
-    const Device device = open_device(options.device);
+    const Device device = open_tuned_device(options.device, options.tuning);
     std::vector<Result> results;
     for (const BenchMesh& mesh : {boxes_in_room(), bumpy_spheres_in_room("spheres-100k", 100'000),
                                   bumpy_spheres_in_room("spheres-1m", 1'000'000)})
@@ -282,6 +283,7 @@ void add_bench_rays_command(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     command->add_flag("--json", options->json, "print a JSON list instead of a table");
     add_device_option(*command, options->device);
+    add_tuning_option(*command, options->tuning);
     command->add_option("--repeats", options->repeats, "timed runs of each tracer")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

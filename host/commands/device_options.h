@@ -1,5 +1,7 @@
 #pragma once
 
+#include "opencl/device.h"
+
 #include <CLI/CLI.hpp>
 
 #include <string>
@@ -8,8 +10,26 @@ namespace tristim {
 
 /// Registers --device, for open_device().
 inline void add_device_option(CLI::App& command, std::string& device) {
-    command.add_option("--device", device, "OpenCL device: index, or part of its name or platform [first CPU]")
+    command
+        .add_option(
+            "--device", device,
+            "OpenCL device: index, cpu, gpu, or part of its name or platform; render shares passes among several "
+            "with commas between [TRISTIM_DEVICE, else first CPU]")
         ->type_name("INDEX|NAME");
+}
+
+/// Registers --tuning, for open_tuned_device().
+inline void add_tuning_option(CLI::App& command, std::string& tuning) {
+    command.add_option("--tuning", tuning, "Other values than the table of devices has, for scripts/tune")
+        ->type_name("NAME=VALUE,…");
+}
+
+/// open_device(), with changes as parse_tuning() takes them, or none. Throws Error.
+inline Device open_tuned_device(const std::string& selector, const std::string& changes) {
+    Device device = open_device(selector);
+    if (!changes.empty())
+        device.tuning = parse_tuning(changes, device.tuning);
+    return device;
 }
 
 /// Registers --math, "precise" or "fast"; `math` holds the default.

@@ -4,7 +4,7 @@
 
 namespace tristim {
 
-/// Registers `devices`: every OpenCL platform and device.
+/// Registers `devices`: every OpenCL platform and device, and what they are worth.
 void add_devices_command(CLI::App& app);
 
 } // namespace tristim

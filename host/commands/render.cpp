@@ -10,9 +10,8 @@
 #include "image/write_image.h"
 #include "render/choose_method.h"
 #include "render/image_metadata.h"
-#include "render/pilot.h"
-#include "render/renderer.h"
 #include "render/stats_json.h"
+#include "render/team.h"
 
 #include <cmath>
 #include <filesystem>
@@ -36,6 +35,13 @@ struct RenderCommand {
     bool quiet = false;
 };
 
+std::vector<DeviceInfo> infos(const std::vector<Device>& devices) {
+    std::vector<DeviceInfo> result;
+    for (const Device& device : devices)
+        result.push_back(device.info);
+    return result;
+}
+
 bool is_exr(const std::string& path) {
     return ::strcasecmp(std::filesystem::path(path).extension().c_str(), ".exr") == 0;
 }
@@ -50,17 +56,40 @@ RenderBudget limits(const RenderCommand& command, const Scene& scene) {
     return {command.passes, command.seconds};
 }
 
-/// Renders passes until a limit is reached or the user interrupts; how many were done.
-std::uint64_t render_passes(Renderer& renderer, const RenderBudget& limits, bool quiet) {
-    Progress progress(limits, renderer.options().photons_per_pass, quiet);
-    std::uint64_t done = 0;
-    const std::uint64_t most = std::min<std::uint64_t>(limits.passes.value_or(pilot_pass), pilot_pass);
-    while (done < most && !interrupted() && !(limits.seconds && progress.elapsed() >= *limits.seconds && done > 0)) {
-        renderer.render_pass(static_cast<std::uint32_t>(done++));
+/// Renders passes until a limit is reached, the user interrupts or no device is left.
+RenderOutcome render_passes(Team& team, const RenderOptions& options, const RenderBudget& limits, bool quiet) {
+    Progress progress(limits, options.photons_per_pass, quiet);
+    team.render(limits, [&](std::uint64_t done) {
         progress.update(done);
+        return !interrupted();
+    });
+    RenderOutcome outcome = team.outcome();
+    progress.finish(outcome.statistics.passes);
+    return outcome;
+}
+
+/// Tells of the devices that failed. Whether the others did without them what was asked for.
+bool report_failures(const RenderOutcome& outcome, const RenderBudget& limits) {
+    std::size_t failed = 0;
+    for (const DeviceShare& share : outcome.shares) {
+        if (share.failure.empty())
+            continue;
+        ++failed;
+        fmt::print(stderr, "{}: device '{}' failed after {} passes: {}\n",
+                   failed == outcome.shares.size() ? "error" : "warning", share.device.name, share.passes,
+                   share.failure);
     }
-    progress.finish(done);
-    return done;
+    return failed < outcome.shares.size() || (limits.passes && outcome.statistics.passes >= *limits.passes);
+}
+
+/// "A" or "A (41 passes), B (23 passes)".
+std::string describe(const std::vector<DeviceShare>& shares) {
+    if (shares.size() == 1)
+        return shares.front().device.name;
+    std::vector<std::string> parts;
+    for (const DeviceShare& share : shares)
+        parts.push_back(fmt::format("{} ({} passes)", share.device.name, share.passes));
+    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 /// --method auto: fills in the method, and says which and why.
@@ -95,16 +124,21 @@ void run(RenderCommand& command) {
         print_notes(scene);
 
     catch_interrupts();
-    const Device device = open_device(command.arguments.device);
-    const auto device_scene = std::make_shared<const DeviceScene>(scene, options, device);
-    if (options.auto_method)
-        choose(device_scene, device, stop, command.quiet, options);
-    Renderer renderer(device_scene, options, device);
-    const std::uint64_t passes = render_passes(renderer, stop, command.quiet);
-    if (passes == 0)
-        fail("interrupted before the first pass was done: no image written");
+    const std::vector<Device> devices = open_devices(command.arguments.device);
+    std::shared_ptr<const DeviceScene> device_scene;
+    if (options.auto_method) {
+        device_scene = std::make_shared<const DeviceScene>(scene, options, devices.front());
+        choose(device_scene, devices.front(), stop, command.quiet, options);
+    }
+    Team team(scene, options, devices, device_scene);
+    const RenderOutcome outcome = render_passes(team, options, stop, command.quiet);
+    const RenderStatistics& statistics = outcome.statistics;
+    const bool complete = report_failures(outcome, stop);
+    if (statistics.passes == 0)
+        fail("{} before the first pass was done: no image written",
+             interrupted() ? "interrupted" : "no device was left");
 
-    const FilmImage film = renderer.film();
+    const FilmImage film = developed(outcome.sums, options);
     const XyzImage image = xyz_image(film);
     const ColourSpace space = command.space == "xyz" ? ColourSpace::CieXyz : ColourSpace::Srgb;
     const ToneMapping tone_mapping{command.tone_mapping == "linear" ? ToneMapping::Kind::Linear
@@ -112,23 +146,28 @@ void run(RenderCommand& command) {
                                    command.exposure};
     for (const std::string& path : command.outfiles) {
         if (is_exr(path))
-            write_exr(path, image, space, image_metadata(renderer, command.arguments.scene, film.rejected_samples));
+            write_exr(
+                path, image, space,
+                image_metadata(options, statistics, infos(devices), command.arguments.scene, film.rejected_samples));
         else
             write_png(path, image, tone_mapping);
     }
     if (!command.stats.empty()) {
-        const std::string json = stats_json(renderer, command.arguments.scene, load_seconds).dump(2) + "\n";
+        const std::string json = stats_json(options, outcome, command.arguments.scene, load_seconds).dump(2) + "\n";
         replace_file(command.stats, json);
     }
     if (film.rejected_samples > 0)
         fmt::print(stderr, "warning: {} values were not finite and left out: {}\n", film.rejected_samples,
-                   describe(renderer.non_finite()));
-    if (!command.quiet) {
-        const RenderStatistics& statistics = renderer.statistics();
+                   describe(outcome.sums.non_finite));
+    if (!command.quiet)
         fmt::print(stderr, "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {} non-finite values; wrote {}\n",
-                   interrupted() ? "interrupted: " : "", passes, device.info.name, statistics.render_seconds,
-                   statistics.build_kernels_seconds, film.rejected_samples, fmt::join(command.outfiles, ", "));
-    }
+                   interrupted() ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
+                   statistics.render_seconds, statistics.build_kernels_seconds, film.rejected_samples,
+                   fmt::join(command.outfiles, ", "));
+    if (!interrupted())
+        team.keep_programs();
+    if (!complete)
+        throw CLI::RuntimeError(1);
 }
 
 } // namespace

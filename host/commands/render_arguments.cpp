@@ -34,7 +34,16 @@ void add_render_arguments(CLI::App& command, RenderArguments& a) {
         ->capture_default_str();
     add_render_settings(command, a);
     add_device_option(command, a.device);
+    command
+        .add_option("--effects", a.effects,
+                    "Compile these effects in beside those that the scene calls for, or all; the image stays the same, "
+                    "see `tristim effects`")
+        ->type_name("NAME,...|all");
     command.add_option("--dump-kernels", a.dump_kernels, "Write the OpenCL programs as built, options included")
+        ->type_name("DIR");
+    command
+        .add_option("--kernels", a.kernels,
+                    "Read OpenCL sources from here, a changed copy of kernels/ or what --dump-kernels wrote")
         ->type_name("DIR");
 }
 
@@ -112,7 +121,10 @@ RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
     options.radius_factor = a.radius_factor;
     options.alpha = a.alpha;
     options.photon_roughness = a.photon_roughness;
+    if (!a.effects.empty())
+        options.more_effects = parse_effects(a.effects);
     options.fast_math = a.math == "fast";
+    options.kernels = a.kernels;
     options.dump_kernels = a.dump_kernels;
     check_options(options);
     return options;

@@ -25,6 +25,8 @@ struct RenderArguments {
     double photon_roughness = default_photon_roughness;
     std::string math = "precise";
     std::string device;
+    std::string effects;
+    std::string kernels;
     std::string dump_kernels;
     std::optional<int> photons;
     std::optional<int> max_depth;

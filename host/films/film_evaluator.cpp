@@ -13,7 +13,6 @@ namespace tristim {
 namespace {
 
 constexpr std::size_t lanes = 16;
-constexpr std::size_t group = 16;                  // work-items
 constexpr std::size_t media_rows = 3;              // n outside; n and k of the base
 constexpr std::size_t max_table_floats = 1U << 23; // of the pass tables of one launch
 
@@ -112,6 +111,7 @@ void FilmEvaluator::evaluate_part(const std::vector<double>& lambda_nm, std::siz
     kernel_.setArg(argument++, layers.cl());
     kernel_.setArg(argument++, cosine_of(angle_deg));
     kernel_.setArg(argument++, output.cl());
+    const std::size_t group = device_.tuning.pixel_group;
     const std::size_t padded = (items + group - 1) / group * group;
     device_.queue.enqueueNDRangeKernel(kernel_, ::cl::NullRange, ::cl::NDRange(padded), ::cl::NDRange(group));
 

@@ -13,6 +13,7 @@ namespace tristim {
              "--resolution or --photons, or use a method with fewer wavelengths",
              name, size, device.info.name, static_cast<double>(device.info.largest_allocation) / mib);
     try {
+        device.before(DeviceCall::Allocate);
         return ::cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes);
     } catch (const ::cl::Error& error) {
         fail("out of device memory: buffer '{}' of {:.1f} MiB: {}", name, size, describe_opencl_error(error));

@@ -57,6 +57,7 @@ Buffer<T>::Buffer(const Device& device, std::string name, const std::vector<T>& 
 template <typename T>
 std::vector<T> Buffer<T>::read(const Device& device, std::size_t count) const {
     std::vector<T> data(count);
+    device.before(DeviceCall::Copy);
     if (count > 0)
         device.queue.enqueueReadBuffer(buffer_, CL_TRUE, 0, count * sizeof(T), data.data());
     return data;
@@ -64,12 +65,14 @@ std::vector<T> Buffer<T>::read(const Device& device, std::size_t count) const {
 
 template <typename T>
 void Buffer<T>::write(const Device& device, const std::vector<T>& data) const {
+    device.before(DeviceCall::Copy);
     if (!data.empty())
         device.queue.enqueueWriteBuffer(buffer_, CL_TRUE, 0, data.size() * sizeof(T), data.data());
 }
 
 template <typename T>
 void Buffer<T>::fill(const Device& device, const T& value) const {
+    device.before(DeviceCall::Copy);
     device.queue.enqueueFillBuffer(buffer_, value, 0, sizeof(T) * (count_ > 0 ? count_ : 1));
 }
 

@@ -1,6 +1,7 @@
 #include "opencl/device.h"
 
 #include "base/error.h"
+#include "base/split.h"
 #include "opencl/errors.h"
 
 #include <algorithm>
@@ -33,7 +34,13 @@ DeviceInfo query(int index, const std::string& platform, const ::cl::Device& dev
     info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     info.largest_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     info.fp64 = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+    info.fma = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0;
+    info.largest_group = std::min(device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>(),
+                                  device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
     info.compiler = device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() == CL_TRUE;
+    info.available = device.getInfo<CL_DEVICE_AVAILABLE>() == CL_TRUE;
+    info.little_endian = device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() == CL_TRUE;
+    info.full_profile = device.getInfo<CL_DEVICE_PROFILE>() == "FULL_PROFILE";
     return info;
 }
 
@@ -72,9 +79,12 @@ int find_device(const std::vector<DeviceInfo>& devices, const std::string& selec
         const int index = std::stoi(selector);
         return index < static_cast<int>(devices.size()) ? index : -1;
     }
+    const std::string name = lower(selector);
+    const cl_device_type type = name == "cpu" ? CL_DEVICE_TYPE_CPU : name == "gpu" ? CL_DEVICE_TYPE_GPU : 0;
     const auto match = std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& info) {
-        return lower(info.name).find(lower(selector)) != std::string::npos ||
-               lower(info.platform).find(lower(selector)) != std::string::npos;
+        if (type != 0)
+            return (info.type & type) != 0;
+        return lower(info.name).find(name) != std::string::npos || lower(info.platform).find(name) != std::string::npos;
     });
     return match != devices.end() ? match->index : -1;
 }
@@ -91,6 +101,38 @@ std::string environment_selector() {
     return value != nullptr ? value : "";
 }
 
+/// Opens one of the devices, as the `place`th of a list.
+Device open_listed(const std::vector<Listed>& listed, const std::string& selector, int place) {
+    const std::vector<DeviceInfo> devices = infos(listed);
+    const int index = selector.empty() ? default_device_index(devices) : find_device(devices, selector);
+    if (index < 0)
+        fail("device '{}' not found among {} OpenCL device(s): see 'tristim devices'", selector, devices.size());
+
+    Device device;
+    device.info = devices[static_cast<std::size_t>(index)];
+    if (const std::string missing = missing_feature(device.info); !missing.empty())
+        fail("device '{}' {}", device.info.name, missing);
+    device.tuning = device_tuning(device.info);
+    device.device = listed[static_cast<std::size_t>(index)].device;
+    device.faults = fault_plan_from_environment(place);
+    try {
+        device.context = ::cl::Context(device.device);
+        device.queue = ::cl::CommandQueue(device.context, device.device, CL_QUEUE_PROFILING_ENABLE);
+    } catch (const ::cl::Error& error) {
+        fail("device '{}' cannot be opened: {}", device.info.name, describe_opencl_error(error));
+    }
+    return device;
+}
+
+/// The names in a list of selectors, or in the environment's; one empty name for the default.
+std::vector<std::string> selectors_in(const std::string& list) {
+    const std::string given = list.empty() ? environment_selector() : list;
+    std::vector<std::string> selectors = split(given, ',');
+    if (selectors.size() > 1 && std::find(selectors.begin(), selectors.end(), "") != selectors.end())
+        fail("the list of devices '{}' has an empty place", given);
+    return selectors;
+}
+
 } // namespace
 
 std::vector<DeviceInfo> list_devices() {
@@ -98,7 +140,7 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 int default_device_index(const std::vector<DeviceInfo>& devices) {
-    if (const std::string selector = environment_selector(); !selector.empty())
+    if (const std::string selector = selectors_in("").front(); !selector.empty())
         return find_device(devices, selector);
     const auto cpu = std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& info) {
         return info.compiler && (info.type & CL_DEVICE_TYPE_CPU) != 0;
@@ -109,27 +151,21 @@ int default_device_index(const std::vector<DeviceInfo>& devices) {
 }
 
 Device open_device(const std::string& selector) {
+    std::vector<Device> devices = open_devices(selector);
+    if (devices.size() > 1)
+        fail("this runs on one device, not on the {} of '{}'", devices.size(),
+             selector.empty() ? environment_selector() : selector);
+    return devices.front();
+}
+
+std::vector<Device> open_devices(const std::string& selectors) {
     const std::vector<Listed> listed = enumerate();
     if (listed.empty())
         fail("no OpenCL device found: install an OpenCL platform (Debian: apt install pocl-opencl-icd)");
-    const std::vector<DeviceInfo> devices = infos(listed);
-    const int index = selector.empty() ? default_device_index(devices) : find_device(devices, selector);
-    if (index < 0)
-        fail("device '{}' not found among {} OpenCL device(s): see 'tristim devices'",
-             selector.empty() ? environment_selector() : selector, devices.size());
-
-    Device device;
-    device.info = devices[static_cast<std::size_t>(index)];
-    if (!device.info.compiler)
-        fail("device '{}' has no OpenCL C compiler, which tristim needs", device.info.name);
-    device.device = listed[static_cast<std::size_t>(index)].device;
-    try {
-        device.context = ::cl::Context(device.device);
-        device.queue = ::cl::CommandQueue(device.context, device.device, CL_QUEUE_PROFILING_ENABLE);
-    } catch (const ::cl::Error& error) {
-        fail("device '{}' cannot be opened: {}", device.info.name, describe_opencl_error(error));
-    }
-    return device;
+    std::vector<Device> devices;
+    for (const std::string& selector : selectors_in(selectors))
+        devices.push_back(open_listed(listed, selector, static_cast<int>(devices.size())));
+    return devices;
 }
 
 } // namespace tristim

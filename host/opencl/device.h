@@ -1,5 +1,7 @@
 #pragma once
 
+#include "opencl/device_table.h"
+#include "opencl/faults.h"
 #include "opencl/opencl.h"
 
 #include <cstdint>
@@ -20,8 +22,13 @@ struct DeviceInfo {
     unsigned preferred_float_width = 0;
     std::uint64_t global_memory = 0;      ///< bytes
     std::uint64_t largest_allocation = 0; ///< bytes
+    std::size_t largest_group = 1;        ///< work-items in one dimension
     bool fp64 = false;
+    bool fma = false; ///< fused multiply-add in hardware
     bool compiler = false;
+    bool available = false;
+    bool little_endian = false;
+    bool full_profile = false; ///< not OpenCL's embedded profile
 };
 
 /// Every device of every platform, platforms without devices skipped. Empty if no platform is installed.
@@ -30,17 +37,29 @@ std::vector<DeviceInfo> list_devices();
 /// An opened device: context and in-order queue with profiling.
 struct Device {
     DeviceInfo info;
+    DeviceTuning tuning;
     ::cl::Device device;
     ::cl::Context context;
     ::cl::CommandQueue queue;
+    std::shared_ptr<FaultPlan> faults; ///< what a test makes fail; none otherwise
+
+    /// To be called before any such call, which fails if a test wants it to.
+    void before(DeviceCall call) const {
+        if (faults)
+            faults->before(call);
+    }
 };
 
-/// Opens a device by index or by part of its name or its platform's name (case-insensitive; the first match).
-/// An empty selector takes TRISTIM_DEVICE from the environment, else the first CPU, else the first device.
-/// Throws Error if there is no platform, no match or no online compiler.
+/// Opens a device by index, by "cpu" or "gpu" (the first), or by part of its name or its platform's name
+/// (case-insensitive; the first match). An empty selector takes TRISTIM_DEVICE from the environment, else the first
+/// CPU, else the first device. Throws Error if there is no platform, no match or no online compiler, or if the selector
+/// is a list.
 Device open_device(const std::string& selector);
 
-/// The index that open_device("") would take, -1 if there is none.
+/// The same for a list of selectors with commas between: "0,2" or "cpu,gpu".
+std::vector<Device> open_devices(const std::string& selectors);
+
+/// The index of the first device that open_device("") would take, -1 if there is none.
 int default_device_index(const std::vector<DeviceInfo>& devices);
 
 } // namespace tristim

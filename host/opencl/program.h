@@ -13,8 +13,9 @@ using Macros = std::vector<std::pair<std::string, std::string>>;
 
 /// How programs are built.
 struct BuildOptions {
-    bool fast_math = false; ///< -cl-fast-relaxed-math and native_* functions
-    std::string dump_dir;   ///< if set, the exact source that ran is written there, its options as #defines on top
+    bool fast_math = false;      ///< -cl-fast-relaxed-math and native_* functions
+    std::string dump_dir;        ///< if set, the exact source that ran is written there, its options as #defines on top
+    std::string source_dir = {}; ///< if set, kernel files and headers are read from there, not from the binary
 };
 
 /// The source of a kernel file ("eye_pass.cl") with its includes put in place, each once.

@@ -5,9 +5,10 @@
 namespace tristim {
 
 DeviceScene::DeviceScene(const Scene& scene, const RenderOptions& options, const Device& device)
-    : context_(device.context), width_(options.width), height_(options.height), region_(options.region) {
+    : context_(device.context), width_(options.width), height_(options.height), region_(options.region),
+      more_effects_(options.more_effects) {
     check_options(options);
-    effects_ = derive_effects(scene, options.photon_roughness);
+    effects_ = united(derive_effects(scene, options.photon_roughness), options.more_effects);
     flat_ = flatten_scene(scene, effects_, width_, height_, region_);
     buffers_ = SceneBuffers(device, flat_);
     flat_.soup = {};
@@ -23,6 +24,8 @@ std::string DeviceScene::mismatch(const RenderOptions& options, const Device& de
         return "region";
     if (options.photon_roughness != effects_.photon_roughness)
         return "photon roughness";
+    if (options.more_effects != more_effects_)
+        return "choice of effects";
     return device.context() == context_() ? "" : "device";
 }
 

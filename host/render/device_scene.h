@@ -13,14 +13,15 @@ namespace tristim {
 /// tree and its buffers. Renderers only read it.
 class DeviceScene {
   public:
-    /// For renders of these options' resolution, region and photon roughness; the other options do not matter. Throws
-    /// Error if these cannot be rendered, the scene emits no visible light or the device has too little memory.
+    /// For renders of these options' resolution, region, photon roughness and effects; the other options do not matter.
+    /// Throws Error if these cannot be rendered, the scene emits no visible light or the device has too little memory.
     DeviceScene(const Scene& scene, const RenderOptions& options, const Device& device);
 
     /// What of a renderer with these options on this device keeps it from using this: "resolution", "region", "photon
-    /// roughness" or "device"; empty if nothing does.
+    /// roughness", "choice of effects" or "device"; empty if nothing does.
     std::string mismatch(const RenderOptions& options, const Device& device) const;
 
+    /// With RenderOptions::more_effects.
     const Effects& effects() const { return effects_; }
     const SceneBuffers& buffers() const { return buffers_; }
 
@@ -32,6 +33,7 @@ class DeviceScene {
     int width_;
     int height_;
     Region region_;
+    Effects more_effects_;
     Effects effects_;
     FlatScene flat_;
     SceneBuffers buffers_;

@@ -22,6 +22,19 @@ struct FilmImage {
     std::uint64_t passes = 0;
 };
 
+/// The sums of a pixel's samples and of their squares, in X, Y and Z.
+std::array<double, 3> sample_sums(const FilmPixel& pixel);
+std::array<double, 3> square_sums(const FilmPixel& pixel);
+
+/// Rays traced for a pixel.
+std::uint64_t camera_rays(const FilmPixel& pixel);
+std::uint64_t shadow_rays(const FilmPixel& pixel);
+
+/// Adds the passes of another film of the same pixels to `film`. Whatever passes are in which of several films, and in
+/// whatever order these are added up, the developed means are the same, and variances but for rounding. What --radius
+/// statistics keeps is not summed.
+void add_film(std::vector<FilmPixel>& film, const std::vector<FilmPixel>& more);
+
 /// The image alone.
 XyzImage xyz_image(FilmImage film);
 

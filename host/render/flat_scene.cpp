@@ -131,14 +131,14 @@ void add_materials(const Scene& scene, const Effects& effects, FlatScene& flat) 
 constexpr std::array<std::array<float, 2>, 3> default_uv{{{0.0F, 0.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}}};
 
 /// Returns the index of the triangle's attributes, or -1 if it needs none.
-int add_attributes(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners, const V3d& normal,
-                   const Effects& effects, std::vector<float>& attributes) {
+int add_attributes(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners, const Effects& effects,
+                   std::vector<float>& attributes) {
     if (mesh.normals.empty() && !effects.uv)
         return -1;
     const auto index = static_cast<int>(attributes.size());
     if (effects.shading_normals) {
         for (const std::uint32_t corner : corners) {
-            const V3f n = mesh.normals.empty() ? V3f(normal) : mesh.normals[corner];
+            const V3f n = mesh.normals.empty() ? V3f(0.0F) : mesh.normals[corner]; // 0: the triangle's own
             attributes.insert(attributes.end(), {n.x, n.y, n.z});
         }
     }
@@ -169,8 +169,7 @@ void add_triangles(const Shape& shape, const Effects& effects, const Light* area
             continue; // too thin for single precision
         Triangle t = flat_triangle(v0, v1, v2);
         t.material = shape.material;
-        t.attributes =
-            add_attributes(shape.mesh, corners, V3d(t.normal_x, t.normal_y, t.normal_z), effects, flat.attributes);
+        t.attributes = add_attributes(shape.mesh, corners, effects, flat.attributes);
         if (area_light != nullptr) {
             SceneLight light = flat_area_light(v0, v1, v2);
             light.spectrum = spectrum;

@@ -1,23 +1,34 @@
 #include "render/image_metadata.h"
 
+#include <fmt/ranges.h>
+
 namespace tristim {
 
-ImageMetadata image_metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples) {
-    const RenderOptions& options = renderer.options();
-    const RenderStatistics& statistics = renderer.statistics();
+ImageMetadata image_metadata(const RenderOptions& options, const RenderStatistics& statistics,
+                             const std::vector<DeviceInfo>& devices, const std::string& scene,
+                             std::uint64_t rejected_samples) {
     const auto integer = [](auto value) { return static_cast<std::int64_t>(value); };
+    std::vector<std::string> names, drivers;
+    for (const DeviceInfo& device : devices) {
+        names.push_back(device.name);
+        drivers.push_back(device.driver);
+    }
     return {{"scene", scene},
             {"method", options.method.name()},
             {"sequence", sequence_name(options)},
             {"passes", integer(statistics.passes)},
             {"photons", integer(statistics.photons_emitted)},
             {"seed", integer(options.seed)},
-            {"device", renderer.device().info.name},
-            {"driver", renderer.device().info.driver},
+            {"device", fmt::format("{}", fmt::join(names, ", "))},
+            {"driver", fmt::format("{}", fmt::join(drivers, ", "))},
             {"seconds_rendering", statistics.render_seconds},
             {"seconds_building_kernels", statistics.build_kernels_seconds},
             {"non_finite_samples", integer(rejected_samples)},
             {"version", std::string(TRISTIM_VERSION)}};
+}
+
+ImageMetadata image_metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples) {
+    return image_metadata(renderer.options(), renderer.statistics(), {renderer.device().info}, scene, rejected_samples);
 }
 
 } // namespace tristim

@@ -4,10 +4,16 @@
 #include "render/renderer.h"
 
 #include <string>
+#include <vector>
 
 namespace tristim {
 
-/// What an image's header says of the render: scene file, method, passes, photons, seed, device, times and so on.
+/// What an image's header says of the render: scene file, method, passes, photons, seed, devices, times and so on.
+ImageMetadata image_metadata(const RenderOptions& options, const RenderStatistics& statistics,
+                             const std::vector<DeviceInfo>& devices, const std::string& scene,
+                             std::uint64_t rejected_samples);
+
+/// The same for a renderer alone.
 ImageMetadata image_metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples);
 
 } // namespace tristim

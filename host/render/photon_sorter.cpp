@@ -1,28 +1,14 @@
 #include "render/photon_sorter.h"
 
-#include "render/work_groups.h"
+#include "base/error.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tristim {
-namespace {
-
-/// Pieces that the pairs are sorted in, one work-item each, a multiple of a group. The result does not depend on it.
-std::uint32_t sort_blocks(const DeviceInfo& info) {
-    constexpr std::uint32_t groups_per_unit = 2; // evens out threads that are held up
-    return groups_per_unit * item_group * info.compute_units;
-}
-
-/// How many steps the loops of a work-item may take in all: llvmpipe (Mesa 22.3) ends them after 65535.
-std::uint32_t loop_steps(const std::string& device) {
-    return device.find("llvmpipe") != std::string::npos ? 1U << 14U : std::numeric_limits<std::uint32_t>::max();
-}
-
-} // namespace
 
 PhotonSorter::PhotonSorter(const Device& device, const Macros& macros, const BuildOptions& options, int radix_bits)
-    : device_name_(device.info.name), radix_bits_(radix_bits), blocks_(sort_blocks(device.info)),
+    : tuning_(device.tuning), radix_bits_(radix_bits),
+      blocks_(tuning_.sort_groups * static_cast<std::uint32_t>(tuning_.item_group) * device.info.compute_units),
       summary_(device, "photon summary", 2),
       histogram_(device, "sort histogram", (std::size_t{1} << radix_bits) * blocks_),
       totals_(device, "sort totals", std::size_t{1} << radix_bits),
@@ -48,15 +34,25 @@ void PhotonSorter::allocate(const Device& device, std::uint32_t items, std::uint
 
 void PhotonSorter::count(const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue) {
     offsets_.setArg(0, item_counts.cl());
-    offsets_.setArg(1, items_);
-    offsets_.setArg(2, capacity_);
-    offsets_.setArg(3, item_offsets_.cl());
-    offsets_.setArg(4, summary_.cl());
-    enqueue(offsets_, 1, 1);
+    offsets_.setArg(3, capacity_);
+    offsets_.setArg(4, item_offsets_.cl());
+    offsets_.setArg(5, summary_.cl());
+    const std::uint32_t most = std::min(items_, tuning_.loop_steps);
+    for (std::uint32_t first = 0; first < items_; first += most) {
+        offsets_.setArg(1, first);
+        offsets_.setArg(2, std::min(items_ - first, most) + first);
+        enqueue(offsets_, 1, 1);
+    }
 }
 
 PhotonSorter::Summary PhotonSorter::summary(const Device& device) const {
     const std::vector<std::uint32_t> values = summary_.read(device);
+    const std::uint64_t steps = values[0] / blocks_ + 2 * totals_.size(); // of sort_count and sort_scatter
+    if (steps > tuning_.loop_steps)
+        fail("device '{}' may end loops of more than {} steps, too few to sort a pass's {} photons: lower the photons "
+             "per "
+             "pass",
+             device.info.name, tuning_.loop_steps, values[0]);
     return {values[0], values[1]};
 }
 
@@ -68,7 +64,7 @@ void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Ph
     keys_.setArg(3, item_offsets_.cl());
     keys_.setArg(4, largest_radius.cl());
     keys_.setArg(5, pairs_.cl());
-    enqueue(keys_, items_, item_group);
+    enqueue(keys_, items_, tuning_.item_group);
     for (const int shift : {0, radix_bits_}) {
         const Buffer<cl_uint2>& from = shift == 0 ? pairs_ : other_pairs_;
         const Buffer<cl_uint2>& to = shift == 0 ? other_pairs_ : pairs_;
@@ -76,33 +72,34 @@ void PhotonSorter::sort(const Buffer<SceneConstants>& constants, const Buffer<Ph
         count_.setArg(1, summary_.cl());
         count_.setArg(2, static_cast<cl_uint>(shift));
         count_.setArg(3, histogram_.cl());
-        enqueue(count_, blocks_, item_group);
+        enqueue(count_, blocks_, tuning_.item_group);
         digit_totals_.setArg(0, blocks_);
         digit_totals_.setArg(1, histogram_.cl());
         digit_totals_.setArg(2, totals_.cl());
-        enqueue(digit_totals_, totals_.size(), item_group);
+        enqueue(digit_totals_, totals_.size(), tuning_.item_group);
         scan_.setArg(0, blocks_);
         scan_.setArg(1, totals_.cl());
         scan_.setArg(2, histogram_.cl());
-        enqueue(scan_, totals_.size(), item_group);
+        enqueue(scan_, totals_.size(), tuning_.item_group);
         scatter_.setArg(0, from.cl());
         scatter_.setArg(1, summary_.cl());
         scatter_.setArg(2, static_cast<cl_uint>(shift));
         scatter_.setArg(3, histogram_.cl());
         scatter_.setArg(4, to.cl());
-        enqueue(scatter_, blocks_, item_group);
+        enqueue(scatter_, blocks_, tuning_.item_group);
     }
     ranges_.setArg(0, pairs_.cl());
     ranges_.setArg(1, summary_.cl());
     ranges_.setArg(4, bucket_begin_.cl());
     // The room for photons rather than their number, which changes with each pass: PoCL would compile the kernel anew.
     const std::size_t range_items = pairs_.size() + 1;
+    const std::size_t group = tuning_.pixel_group;
     const auto buckets = static_cast<std::uint32_t>(bucket_begin_.size());
-    const std::uint32_t most = std::min(buckets, loop_steps(device_name_));
+    const std::uint32_t most = std::min(buckets, tuning_.loop_steps);
     for (std::uint32_t skip = 0; skip < buckets; skip += most) {
         ranges_.setArg(2, skip);
         ranges_.setArg(3, most);
-        enqueue(ranges_, (range_items + pixel_group - 1) / pixel_group * pixel_group, pixel_group);
+        enqueue(ranges_, (range_items + group - 1) / group * group, group);
     }
 }
 

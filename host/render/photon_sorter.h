@@ -42,13 +42,17 @@ class PhotonSorter {
 
     const Buffer<cl_uint2>& pairs() const { return pairs_; }
     const Buffer<std::uint32_t>& bucket_begin() const { return bucket_begin_; }
+    /// One of its kernels; all are of one program.
+    const ::cl::Kernel& kernel() const { return ranges_; }
+
     const Buffer<std::uint32_t>& item_offsets() const { return item_offsets_; }
     std::vector<std::pair<std::string, std::uint64_t>> sizes() const;
 
   private:
-    std::string device_name_;
+    DeviceTuning tuning_;
     int radix_bits_ = 0;
-    std::uint32_t blocks_ = 0;
+    std::uint32_t blocks_ =
+        0; ///< pieces that pairs are sorted in, by a work-item each; the result does not depend on it
     std::uint32_t items_ = 0;
     std::uint32_t capacity_ = 0;
     Buffer<std::uint32_t> item_offsets_;

@@ -2,47 +2,26 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "bvh/ray_tracer.h"
 #include "opencl/errors.h"
+#include "opencl/program_cache.h"
+#include "render/kernel_macros.h"
 #include "render/pilot.h"
 #include "render/radius_schedule.h"
 #include "render/sampler_table.h"
-#include "render/work_groups.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tristim {
 namespace {
 
-/// Photon paths that a work-item traces one after the other: enough to even out how many photons each stores.
-constexpr std::uint32_t paths_per_item = 64;
 /// Photons that an item has room for at first, per path; more are made as a pass needs them.
 constexpr double photons_per_path = 1.5;
 /// Rays that bench-pass can record, per pixel and photon path.
 constexpr std::size_t recorded_rays_per_path = 24;
-
-/// Two passes of the radix sort over this many bits each: about one bucket per photon.
-int radix_bits(int photons_per_pass) {
-    const int bits = std::bit_width(static_cast<unsigned>(photons_per_pass)) + 1;
-    return std::clamp((bits + 1) / 2, 4, 11);
-}
-
-Macros common_macros(const RenderOptions& options, const Effects& effects, const Bvh& bvh) {
-    Macros macros = method_macros(options.method, options.random_sequence);
-    for (const Macros& more : {effect_macros(effects), traversal_macros(bvh)})
-        macros.insert(macros.end(), more.begin(), more.end());
-    const auto flag = [](bool on) { return on ? "1" : "0"; };
-    macros.emplace_back("MAX_DEPTH", std::to_string(options.max_depth));
-    macros.emplace_back("DIRECT_PHOTONS", flag(options.direct_photons));
-    macros.emplace_back("RADIUS_STATISTICS", flag(options.statistics_radius));
-    macros.emplace_back("PATHS_PER_ITEM", std::to_string(paths_per_item));
-    macros.emplace_back("RADIX_BITS", std::to_string(radix_bits(options.photons_per_pass)));
-    macros.emplace_back("RECORD_RAYS", flag(options.record_rays));
-    return macros;
-}
 
 /// The largest radius that kernels/grid.h's search_radius may ask for in a scene.
 float largest_radius_floor(const SceneConstants& c) {
@@ -97,6 +76,7 @@ Renderer::Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions
     largest_floor_ = largest_radius_floor(flat.constants);
 
     const auto paths = static_cast<std::uint32_t>(options.photons_per_pass);
+    const std::uint32_t paths_per_item = device.tuning.paths_per_item;
     photon_items_ = (paths + paths_per_item - 1) / paths_per_item;
     item_counts_ = Buffer<std::uint32_t>(device, "photon counts", photon_items_);
     item_rays_ = Buffer<std::uint64_t>(device, "photon rays", photon_items_);
@@ -105,12 +85,12 @@ Renderer::Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions
     build_kernels();
     allocate_photons(static_cast<std::uint32_t>(photons_per_path * std::min(paths, paths_per_item)));
     run_pilot();
-    statistics_.build_kernels_seconds = building.seconds();
+    statistics_.build_kernels_seconds = building.seconds() - statistics_.pilot_seconds;
 }
 
 void Renderer::build_kernels() {
-    const Macros macros = common_macros(options_, effects(), bvh());
-    const BuildOptions build{options_.fast_math, options_.dump_kernels};
+    const Macros macros = kernel_macros(options_, effects(), bvh(), device_.tuning);
+    const BuildOptions build = build_options(options_);
     const auto kernel = [&](const char* file, const char* name) {
         return ::cl::Kernel(build_program(device_, file, macros, build), name);
     };
@@ -122,10 +102,20 @@ void Renderer::build_kernels() {
     sorter_ = PhotonSorter(device_, macros, build, radix_bits(options_.photons_per_pass));
     gather_ = kernel("gather.cl", "gather");
     // Relaxed math would undo the film's compensated sums.
-    const ::cl::Program film = build_program(device_, "film.cl", macros, {false, options_.dump_kernels});
+    const ::cl::Program film = build_program(device_, "film.cl", macros, build_options(options_, true));
     film_clear_ = ::cl::Kernel(film, "film_clear");
     film_largest_radius_ = ::cl::Kernel(film, "film_largest_radius");
     film_add_ = ::cl::Kernel(film, "film_add");
+}
+
+void Renderer::keep_programs() const {
+    if (is_cheap_to_keep(device_.info))
+        return;
+    for (const ::cl::Kernel* kernel :
+         {&wavelengths_, &film_tables_, &eye_pass_, &photon_pass_, &sorter_.kernel(), &gather_, &film_add_}) {
+        if ((*kernel)() != nullptr)
+            keep_program(device_, kernel->getInfo<CL_KERNEL_PROGRAM>());
+    }
 }
 
 void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
@@ -175,17 +165,27 @@ void Renderer::run_pilot() {
     trace_eye_paths(seeds, 1.0F);
     trace_photons(seeds);
     if (!options_.radius) {
+        collect_times();
+        const Stopwatch measuring;
         std::vector<float> radii = pilot_radii(visible_points(), options_.region.width, photons());
         for (float& radius : radii)
             radius = std::clamp(radius * static_cast<float>(options_.radius_factor), SMALLEST_RADIUS, LARGEST_RADIUS);
-        radius0_.write(device_, radii);
-        largest_radius0_ = *std::max_element(radii.begin(), radii.end());
+        set_initial_radii(radii);
+        statistics_.pilot_seconds += measuring.seconds();
         trace_eye_paths(seeds, 1.0F); // visible points hold radii
     }
     sort_photons();
     gather_photons();
     add_to_film();
+    collect_times();
+    const auto& steps = statistics_.step_seconds;
+    statistics_.pilot_seconds += std::accumulate(steps.begin(), steps.end(), 0.0);
     reset();
+}
+
+void Renderer::set_initial_radii(const std::vector<float>& radii) {
+    radius0_.write(device_, radii);
+    largest_radius0_ = *std::max_element(radii.begin(), radii.end());
 }
 
 void Renderer::reset() {
@@ -203,7 +203,7 @@ void Renderer::clear_film() {
     non_finite_.fill(device_, 0U);
     film_clear_.setArg(0, radius0_.cl());
     film_clear_.setArg(1, film_.cl());
-    enqueue(Step::Film, film_clear_, film_.size(), pixel_group);
+    enqueue(Step::Film, film_clear_, film_.size(), device_.tuning.pixel_group);
 }
 
 void Renderer::render_pass(const PassSeeds& seeds) {
@@ -215,6 +215,7 @@ void Renderer::render_pass(const PassSeeds& seeds) {
     trace_photons(seeds);
     sort_photons();
     gather_photons();
+    check_loops();
     add_to_film();
     collect_times();
     ++statistics_.passes;
@@ -232,13 +233,14 @@ void Renderer::fill_wavelengths(const PassSeeds& seeds) {
     wavelengths_.setArg(argument++, spectrum_rows_);
     wavelengths_.setArg(argument++, pass_table_.cl());
     const auto wavelengths = static_cast<std::size_t>(layout_.padded());
-    enqueue(Step::Wavelengths, wavelengths_, wavelengths, std::min(wavelengths, pixel_group));
+    enqueue(Step::Wavelengths, wavelengths_, wavelengths, std::min(wavelengths, device_.tuning.pixel_group));
     if (film_table_rows_ == 0)
         return;
     film_tables_.setArg(0, scene_->buffers().materials().cl());
     film_tables_.setArg(1, scene_->buffers().film_layers().cl());
     film_tables_.setArg(2, film_table_rows_);
     film_tables_.setArg(3, pass_table_.cl());
+    film_tables_.setArg(4, non_finite_.cl());
     const std::size_t items = static_cast<std::size_t>(layout_.blocks) * static_cast<std::size_t>(film_table_rows_) *
                               scene_->buffers().materials().size();
     enqueue(Step::Wavelengths, film_tables_, items, 1);
@@ -255,7 +257,7 @@ void Renderer::trace_eye_paths(const PassSeeds& seeds, float scale) {
     eye_pass_.setArg(argument++, visible_surfaces_.cl());
     eye_pass_.setArg(argument++, eye_spectra_.cl());
     eye_pass_.setArg(argument++, non_finite_.cl());
-    enqueue(Step::EyePass, eye_pass_, visible_points_.size(), pixel_group);
+    enqueue(Step::EyePass, eye_pass_, visible_points_.size(), device_.tuning.pixel_group);
 
     const float largest = largest_radius0_ * scale;
     if (!options_.statistics_radius && largest >= largest_floor_) {
@@ -265,7 +267,7 @@ void Renderer::trace_eye_paths(const PassSeeds& seeds, float scale) {
     largest_radius_.fill(device_, 0U);
     film_largest_radius_.setArg(0, visible_points_.cl());
     film_largest_radius_.setArg(1, largest_radius_.cl());
-    enqueue(Step::EyePass, film_largest_radius_, visible_points_.size(), pixel_group);
+    enqueue(Step::EyePass, film_largest_radius_, visible_points_.size(), device_.tuning.pixel_group);
 }
 
 void Renderer::trace_photons(const PassSeeds& seeds) {
@@ -282,7 +284,7 @@ void Renderer::trace_photons(const PassSeeds& seeds) {
         photon_pass_.setArg(argument++, item_counts_.cl());
         photon_pass_.setArg(argument++, item_rays_.cl());
         photon_pass_.setArg(argument++, non_finite_.cl());
-        enqueue(Step::PhotonPass, photon_pass_, photon_items_, item_group);
+        enqueue(Step::PhotonPass, photon_pass_, photon_items_, device_.tuning.item_group);
         sorter_.count(item_counts_, enqueue_grid());
         const PhotonSorter::Summary summary = sorter_.summary(device_);
         photon_count_ = summary.photons;
@@ -311,7 +313,17 @@ void Renderer::gather_photons() {
          {&visible_surfaces_.cl(), &photon_surfaces_.cl(), &scene_->buffers().materials().cl(),
           &scene_->buffers().film_layers().cl(), &gathered_flux_.cl(), &non_finite_.cl()})
         gather_.setArg(argument++, *buffer);
-    enqueue(Step::Gather, gather_, visible_points_.size(), pixel_group);
+    enqueue(Step::Gather, gather_, visible_points_.size(), device_.tuning.pixel_group);
+}
+
+void Renderer::check_loops() const {
+    if (!device_.tuning.ends_loops())
+        return;
+    const std::uint32_t cut = non_finite_.read(device_)[2 * CUT_LOOPS];
+    if (cut > 0)
+        fail("device '{}' ended the loops of {} work-items before they were done, which would lose light: give a pass "
+             "fewer photons (--photons), a smaller --initial-radius or --max-depth, or render on another device",
+             device_.info.name, cut);
 }
 
 void Renderer::add_to_film() {
@@ -319,13 +331,14 @@ void Renderer::add_to_film() {
     film_add_.setArg(1, gathered_flux_.cl());
     film_add_.setArg(2, static_cast<float>(options_.alpha));
     film_add_.setArg(3, film_.cl());
-    enqueue(Step::Film, film_add_, film_.size(), pixel_group);
+    enqueue(Step::Film, film_add_, film_.size(), device_.tuning.pixel_group);
 }
 
 void Renderer::enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group) {
     const std::size_t whole = items / group * group;
     const auto launch = [&](std::size_t offset, std::size_t count, std::size_t size) {
         ::cl::Event event;
+        device_.before(DeviceCall::Launch);
         device_.queue.enqueueNDRangeKernel(kernel, ::cl::NDRange(offset), ::cl::NDRange(count), ::cl::NDRange(size),
                                            nullptr, &event);
         events_.emplace_back(step, event);
@@ -343,6 +356,7 @@ PhotonSorter::Enqueue Renderer::enqueue_grid() {
 }
 
 void Renderer::collect_times() {
+    device_.before(DeviceCall::Wait);
     device_.queue.finish();
     for (const auto& [step, event] : events_) {
         const auto begin = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
@@ -359,26 +373,21 @@ void Renderer::restore(const std::vector<FilmPixel>& film, std::uint64_t passes,
     statistics_.render_seconds = seconds;
 }
 
-RayTotals Renderer::rays() const {
-    RayTotals totals;
-    for (const FilmPixel& pixel : film_.read(device_)) {
-        totals.camera += std::uint64_t{pixel.camera_rays} | std::uint64_t{pixel.ray_carries & 0xffffU} << 32U;
-        totals.shadow += std::uint64_t{pixel.shadow_rays} | std::uint64_t{pixel.ray_carries >> 16U} << 32U;
+RenderSums Renderer::sums() const {
+    RenderSums sums;
+    sums.film = film_.read(device_);
+    for (const FilmPixel& pixel : sums.film) {
+        sums.rays.camera += camera_rays(pixel);
+        sums.rays.shadow += shadow_rays(pixel);
     }
     for (const std::uint64_t rays : item_rays_.read(device_))
-        totals.photon += rays;
-    return totals;
+        sums.rays.photon += rays;
+    sums.non_finite = non_finite_counts(non_finite_.read(device_), sums.film);
+    return sums;
 }
 
 FilmImage Renderer::film() const {
-    const std::vector<FilmPixel> pixels = film_.read(device_);
-    FilmImage image = develop_film(pixels, options_.width, options_.height, options_.region);
-    image.rejected_samples = non_finite(pixels).total();
-    return image;
-}
-
-NonFiniteCounts Renderer::non_finite(const std::vector<FilmPixel>& film) const {
-    return non_finite_counts(non_finite_.read(device_), film);
+    return developed(sums(), options_);
 }
 
 std::vector<Photon> Renderer::photons() const {

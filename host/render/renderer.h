@@ -6,6 +6,7 @@
 #include "render/photon_sorter.h"
 #include "render/ray_recorder.h"
 #include "render/statistics.h"
+#include "render/sums.h"
 
 #include <cstdint>
 #include <memory>
@@ -42,8 +43,15 @@ class Renderer {
     /// Forgets all passes.
     void reset();
 
+    /// Puts its programs into the cache (opencl/program_cache.h), as far as that was not done when they were built. On
+    /// PoCL this takes half as long as building them anew: something for the end of a render.
+    void keep_programs() const;
+
     /// Its rejected samples are non_finite().total().
     FilmImage film() const;
+
+    /// All that the passes have added up to.
+    RenderSums sums() const;
 
     /// The running sums, which another renderer of the same scene, options and device goes on from.
     std::vector<FilmPixel> film_pixels() const { return film_.read(device_); }
@@ -52,10 +60,15 @@ class Renderer {
     void restore(const std::vector<FilmPixel>& film, std::uint64_t passes, double seconds);
 
     /// Rays traced so far, those of the pilot left out.
-    RayTotals rays() const;
+    RayTotals rays() const { return sums().rays; }
 
     /// Values that were not finite so far, those of the pilot left out.
-    NonFiniteCounts non_finite() const { return non_finite(film_.read(device_)); }
+    NonFiniteCounts non_finite() const { return sums().non_finite; }
+
+    /// The search radius of each pixel in pass 0. Renderers that share the passes of an image must agree in it; on
+    /// devices that round differently pilots may not.
+    std::vector<float> initial_radii() const { return radius0_.read(device_); }
+    void set_initial_radii(const std::vector<float>& radii);
 
     const RenderStatistics& statistics() const { return statistics_; }
     const RenderOptions& options() const { return options_; }
@@ -83,12 +96,13 @@ class Renderer {
     void trace_photons(const PassSeeds& seeds);
     void sort_photons();
     void gather_photons();
+    /// Throws Error if the device ended a work-item's loops early (kernels/loops.h).
+    void check_loops() const;
     void add_to_film();
 
     void enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group);
     PhotonSorter::Enqueue enqueue_grid();
     void collect_times();
-    NonFiniteCounts non_finite(const std::vector<FilmPixel>& film) const;
 
     Device device_;
     RenderOptions options_;

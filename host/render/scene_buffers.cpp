@@ -7,11 +7,11 @@ namespace tristim {
 
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& scene) {
     const Stopwatch stopwatch;
-    bvh_ = build_bvh(scene.soup);
+    bvh_ = build_bvh(scene.soup, device.tuning.bvh_width);
     bvh_seconds_ = stopwatch.seconds();
     constants_ = Buffer<SceneConstants>(device, "scene constants", std::vector{scene.constants});
-    nodes_ = Buffer<BvhNode>(device, "BVH nodes", bvh_.nodes);
-    leaves_ = Buffer<BvhLeaf>(device, "BVH leaves", bvh_.leaves);
+    nodes_ = Buffer<std::uint32_t>(device, "BVH nodes", bvh_.nodes.words());
+    leaves_ = Buffer<std::uint32_t>(device, "BVH leaves", bvh_.leaves.words());
     triangles_ = Buffer<Triangle>(device, "triangles", scene.triangles);
     attributes_ = Buffer<float>(device, "vertex attributes", scene.attributes);
     materials_ = Buffer<SurfaceMaterial>(device, "materials", scene.materials);

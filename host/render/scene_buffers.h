@@ -35,8 +35,8 @@ class SceneBuffers {
     Bvh bvh_;
     double bvh_seconds_ = 0.0;
     Buffer<SceneConstants> constants_;
-    Buffer<BvhNode> nodes_;
-    Buffer<BvhLeaf> leaves_;
+    Buffer<std::uint32_t> nodes_;
+    Buffer<std::uint32_t> leaves_;
     Buffer<Triangle> triangles_;
     Buffer<float> attributes_;
     Buffer<SurfaceMaterial> materials_;

@@ -41,8 +41,9 @@ std::string describe(const NonFiniteCounts& counts);
 /// What a render has cost so far.
 struct RenderStatistics {
     double bvh_seconds = 0.0;
-    double build_kernels_seconds = 0.0;                   ///< and the pilot pass
-    double render_seconds = 0.0;                          ///< passes, wall clock
+    double build_kernels_seconds = 0.0; ///< building programs, and what drivers compile at first launches
+    double pilot_seconds = 0.0;         ///< the pilot pass: its kernels on the device, and measuring radii
+    double render_seconds = 0.0;        ///< passes, wall clock
     std::array<double, step_names.size()> step_seconds{}; ///< on the device
     std::uint64_t passes = 0;
     std::uint64_t photons_emitted = 0;
@@ -53,5 +54,9 @@ struct RenderStatistics {
     double bytes_per_pixel = 0.0;
     double bytes_per_photon = 0.0; ///< photon, its spectral fluxes and its sort keys
 };
+
+/// Adds what another device has done at the same time: of the times before the first pass the longer one counts, and
+/// buffers stay those of the first.
+void add_work(RenderStatistics& statistics, const RenderStatistics& more);
 
 } // namespace tristim

@@ -2,20 +2,24 @@
 
 namespace tristim {
 
-nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& scene, double load_seconds) {
-    const RenderOptions& options = renderer.options();
-    const RenderStatistics& statistics = renderer.statistics();
-    const DeviceInfo& device = renderer.device().info;
-    const RayTotals rays = renderer.rays();
+nlohmann::ordered_json stats_json(const RenderOptions& options, const RenderOutcome& outcome, const std::string& scene,
+                                  double load_seconds) {
+    const RenderStatistics& statistics = outcome.statistics;
+    const RayTotals& rays = outcome.sums.rays;
 
     nlohmann::ordered_json json;
     json["version"] = TRISTIM_VERSION;
     json["scene"] = scene;
     json["method"] = options.method.name();
     json["sequence"] = sequence_name(options);
-    json["device"] = device.name;
-    json["platform"] = device.platform;
-    json["driver"] = device.driver;
+    for (const DeviceShare& share : outcome.shares) {
+        json["devices"].push_back({{"name", share.device.name},
+                                   {"platform", share.device.platform},
+                                   {"driver", share.device.driver},
+                                   {"passes", share.passes},
+                                   {"seconds", share.seconds},
+                                   {"failure", share.failure}});
+    }
     json["resolution"] = {options.width, options.height};
     json["region"] = {options.region.x, options.region.y, options.region.x + options.region.width,
                       options.region.y + options.region.height};
@@ -26,6 +30,7 @@ nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& s
     seconds["load"] = load_seconds;
     seconds["bvh"] = statistics.bvh_seconds;
     seconds["build_kernels"] = statistics.build_kernels_seconds;
+    seconds["pilot"] = statistics.pilot_seconds;
     seconds["render"] = statistics.render_seconds;
     for (std::size_t step = 0; step < step_names.size(); ++step)
         seconds["steps"][step_names[step]] = statistics.step_seconds[step];
@@ -36,7 +41,7 @@ nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& s
     json["bytes_per_photon"] = statistics.bytes_per_photon;
     for (const auto& [name, bytes] : statistics.buffer_bytes)
         json["bytes"][name] = bytes;
-    const NonFiniteCounts counts = renderer.non_finite();
+    const NonFiniteCounts& counts = outcome.sums.non_finite;
     json["non_finite_samples"] = counts.total();
     json["non_finite"] = {
         {"eye", counts.eye}, {"photon", counts.photon}, {"gather", counts.gather}, {"film", counts.film}};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/renderer.h"
+#include "render/team.h"
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +9,7 @@
 namespace tristim {
 
 /// What `render --stats` writes. `load_seconds` is the time that reading the scene took.
-nlohmann::ordered_json stats_json(const Renderer& renderer, const std::string& scene, double load_seconds);
+nlohmann::ordered_json stats_json(const RenderOptions& options, const RenderOutcome& outcome, const std::string& scene,
+                                  double load_seconds);
 
 } // namespace tristim

@@ -80,6 +80,7 @@ void check_light(const Light& light, const SourceLocation& where) {
 
 Light make_light(const std::string& kind, ParameterList& parameters, const M44d& ctm, const PathResolver& resolve) {
     Light light;
+    light.where = parameters.where();
     if (kind != "point" && kind != "spot" && kind != "distant" && kind != "infinite")
         fail_at(parameters.where(), "the light \"{}\" is not supported", kind);
     const bool has_intensity = kind == "point" || kind == "spot";
@@ -115,6 +116,7 @@ AreaLight make_area_light(const std::string& kind, ParameterList& parameters, co
         fail_at(parameters.where("filename"), "\"filename\" of {}: image lights are not supported", parameters.owner());
     AreaLight result;
     result.light.kind = Light::Kind::Area;
+    result.light.where = parameters.where();
     result.light.scale = scale_parameter(parameters);
     result.light.emission = emission_parameter(parameters, "L", resolve);
     result.light.two_sided = parameters.boolean("twosided", false);

@@ -75,6 +75,7 @@ Material make_material(const std::string& kind, ParameterList& parameters, const
                        TextureTable& textures) {
     Material material;
     material.name = kind;
+    material.where = parameters.where();
     if (kind == "diffuse") {
         material.kind = Material::Kind::Diffuse;
         if (const auto reflectance = reflectance_parameter(parameters, "reflectance", resolve))

@@ -61,6 +61,7 @@ void SceneBuilder::camera(const std::string& kind, ParameterList parameters) {
         fail_at(parameters.where(), "the camera \"{}\" is not supported", kind);
     Camera& camera = scene_.camera;
     camera = Camera{};
+    camera.where = parameters.where();
     camera.camera_to_world = with_location(parameters.where(), [&] { return inverse_transform(state_.ctm); });
     if (!is_finite_float(camera.camera_to_world))
         fail_at(parameters.where(), "the current transformation is too large for a camera");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/source_location.h"
 #include "spectra/spectrum.h"
 
 #include <Imath/ImathMatrix.h>
@@ -35,7 +36,8 @@ struct Film {
 struct Material {
     enum class Kind { Diffuse, Dielectric, Conductor };
     Kind kind = Kind::Diffuse;
-    std::string name;                               ///< for messages
+    std::string name;                               ///< for messages: the user's, else the kind
+    SourceLocation where;                           ///< where it was made; as all `where`s, of no file if in code
     Spectrum reflectance = Spectrum::constant(0.5); ///< Diffuse: albedo in [0,1]
     Spectrum eta = Spectrum::constant(1.5);         ///< Dielectric: index inside over outside. Conductor: real part.
                                                     ///< Diffuse with a film: index of what lies under the film
@@ -50,6 +52,8 @@ struct Texture {
     enum class Kind { Bilinear, Image };
     enum class Mapping { Uv, Planar, Spherical, Cylindrical };
     enum class Wrap { Repeat, Clamp, Black };
+    std::string name;     ///< for messages
+    SourceLocation where; ///< of the directive
     Kind kind = Kind::Bilinear;
     Mapping mapping = Mapping::Uv;
     M44d world_to_texture;                      ///< Imath convention; Planar: (x, y) of the result is (s, t)
@@ -75,8 +79,9 @@ struct Mesh {
 /// One mesh with its material and, if it emits, its area light.
 struct Shape {
     Mesh mesh;
-    int material = 0;    ///< index into Scene::materials
-    int area_light = -1; ///< index into Scene::lights, or -1
+    int material = 0;          ///< index into Scene::materials
+    int area_light = -1;       ///< index into Scene::lights, or -1
+    SourceLocation where = {}; ///< of the directive, Shape or ObjectInstance
 };
 
 /// A light. `emission` is normalised to Y = 1 (paper's equation 3), `scale` carries everything else, so that
@@ -86,6 +91,7 @@ struct Shape {
 struct Light {
     enum class Kind { Point, Spot, Distant, Infinite, Area };
     Kind kind = Kind::Point;
+    SourceLocation where; ///< of the directive
     Spectrum emission = Spectrum::constant(1.0);
     double scale = 1.0;
     V3d position{0.0};              ///< world space; Point, Spot
@@ -104,6 +110,7 @@ struct Camera {
     std::optional<std::array<double, 4>> screen_window; ///< x0, x1, y0, y1; default from the aspect ratio as in pbrt
     double lens_radius = 0.0;
     double focal_distance = 1e6;
+    SourceLocation where; ///< of the directive
 };
 
 /// What the scene file says of the render itself; flags override it.

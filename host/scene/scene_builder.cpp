@@ -262,8 +262,7 @@ void SceneBuilder::add_shape(const Geometry& world, int material, const AreaLigh
             check_light(scene_.lights.back(), where);
             light = static_cast<int>(scene_.lights.size()) - 1;
         }
-        scene_.shapes.push_back({std::move(mesh), material < 0 ? default_material() : material, light});
-        shape_where_.push_back(where);
+        scene_.shapes.push_back({std::move(mesh), material < 0 ? default_material() : material, light, where});
     }
 }
 
@@ -290,7 +289,7 @@ void SceneBuilder::remove_unused_materials() {
 }
 
 /// A bilinear thickness was checked within its unit square; beyond it, it goes on and may fall below 0.
-void SceneBuilder::check_thickness(const Shape& shape, const SourceLocation& where) const {
+void SceneBuilder::check_thickness(const Shape& shape) const {
     const Material& material = scene_.materials[static_cast<std::size_t>(shape.material)];
     if (material.film.thickness_texture < 0)
         return;
@@ -302,8 +301,9 @@ void SceneBuilder::check_thickness(const Shape& shape, const SourceLocation& whe
     constexpr double rounding = 1e-6;
     const double least = least_value(*texture.pattern, shape.mesh);
     if (least < -rounding * (high - low))
-        fail_at(where, "the film on this shape would be {} nm thick somewhere: the texture \"{}\" is negative there",
-                least, texture.name);
+        fail_at(shape.where,
+                "the film on this shape would be {} nm thick somewhere: the texture \"{}\" is negative there", least,
+                texture.name);
 }
 
 void SceneBuilder::collect_textures() {
@@ -313,8 +313,12 @@ void SceneBuilder::collect_textures() {
         if (index < 0)
             continue;
         const auto [it, is_new] = renamed.try_emplace(index, static_cast<int>(scene_.textures.size()));
-        if (is_new)
-            scene_.textures.push_back(*textures_.used(index).pattern);
+        if (is_new) {
+            const FloatTexture& texture = textures_.used(index);
+            scene_.textures.push_back(*texture.pattern);
+            scene_.textures.back().name = texture.name;
+            scene_.textures.back().where = texture.where;
+        }
         index = it->second;
     }
 }
@@ -331,7 +335,7 @@ void SceneBuilder::note_coarse_shapes() {
         }
     }
     if (coarsest > coarse_spacing)
-        note(shape_where_[worst],
+        note(scene_.shapes[worst].where,
              fmt::format(
                  "this shape lies so far from the middle of the scene, or the scene so far from the origin, that "
                  "its coordinates are precise to {:.2g} of its size only: expect flaws, as from {:.2g} on",
@@ -355,8 +359,8 @@ Scene SceneBuilder::finish() {
                                  [](const Light& light) { return light.kind == Light::Kind::Infinite; });
     if (scene_.shapes.empty() && !sky)
         fail("{}: the scene has no geometry", scene_.path);
-    for (std::size_t i = 0; i < scene_.shapes.size(); ++i)
-        check_thickness(scene_.shapes[i], shape_where_[i]);
+    for (const Shape& shape : scene_.shapes)
+        check_thickness(shape);
     note_coarse_shapes();
     remove_unused_materials();
     collect_textures();

@@ -102,7 +102,7 @@ class SceneBuilder {
     void add_shape(const Geometry& world, int material, const AreaLight* area_light, const SourceLocation& where);
     int default_material();
     void remove_unused_materials();
-    void check_thickness(const Shape& shape, const SourceLocation& where) const;
+    void check_thickness(const Shape& shape) const;
     void collect_textures();
     void note_coarse_shapes();
 
@@ -116,9 +116,8 @@ class SceneBuilder {
     TextureTable textures_;
     std::map<std::string, NamedMaterial> named_materials_;
     std::map<std::string, std::vector<ObjectPart>> objects_;
-    std::vector<SourceLocation> shape_where_; ///< of scene_.shapes
-    std::string open_object_;                 ///< the name between ObjectBegin and ObjectEnd
-    int default_material_ = -1;               ///< index into scene_.materials once a shape needs it
+    std::string open_object_;   ///< the name between ObjectBegin and ObjectEnd
+    int default_material_ = -1; ///< index into scene_.materials once a shape needs it
     std::size_t most_triangles_;
     std::size_t triangles_ = 0; ///< of all shapes and instances so far
     bool in_world_ = false;

@@ -8,13 +8,13 @@
 
 namespace tristim {
 
-/// A line of a scene file, for messages. Lines count from 1.
+/// A line of a scene file, for messages; or none, of what was not read from a file. Lines count from 1.
 struct SourceLocation {
     std::shared_ptr<const std::string> file;
     int line = 0;
 
-    /// "file:line"
-    std::string text() const { return fmt::format("{}:{}", *file, line); }
+    /// "file:line", or nothing
+    std::string text() const { return file ? fmt::format("{}:{}", *file, line) : ""; }
 };
 
 /// Throws Error "file:line: message".

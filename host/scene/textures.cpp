@@ -154,6 +154,7 @@ void TextureTable::define(const std::string& name, const std::string& type, cons
     parameters.finish();
     check_values(texture, name, where);
     texture.name = name;
+    texture.where = where;
     by_name_.emplace(name, std::move(texture));
 }
 

@@ -14,6 +14,7 @@ namespace tristim {
 /// A "float" texture: a constant or a pattern.
 struct FloatTexture {
     std::string name;
+    SourceLocation where; ///< of the directive
     double value = 0.0;
     std::shared_ptr<const Texture> pattern; ///< null: the value everywhere
 };

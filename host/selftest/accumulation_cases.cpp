@@ -135,11 +135,9 @@ Measurement sums_of_powers(const Setting& setting, const ::cl::Program& program,
         },
         [&](std::uint32_t passes, const std::vector<FilmPixel>& film) {
             for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+                const std::array<double, 3> sums = power == 1 ? sample_sums(film[pixel]) : square_sums(film[pixel]);
                 for (std::size_t c = 0; c < 3; ++c) {
-                    const FilmPixel& p = film[pixel];
-                    const double sum =
-                        power == 1 ? double{p.sum_high[c]} + p.sum_low[c] : double{p.square_high[c]} + p.square_low[c];
-                    const double error = static_cast<double>((sum - exact[pixel].sum[c]) / exact[pixel].size[c]);
+                    const double error = static_cast<double>((sums[c] - exact[pixel].sum[c]) / exact[pixel].size[c]);
                     found.add(passes, std::abs(error),
                               [&] { return fmt::format("{} passes, {}", passes, describe(streams[pixel])); });
                 }

@@ -43,15 +43,10 @@ V3d aim(const Corners& triangle, Random& random) {
 
 void add_errors(const GeometryKernels& kernels, const Probes& probes, double parameter, const char* name,
                 Measurement& found) {
-    std::vector<BvhLeaf> leaves(probes.rays.size());
+    BvhBlocks leaves = empty_leaves(probes.rays.size(), kernels.device().tuning.bvh_width);
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-        std::fill(std::begin(leaves[i].id), std::end(leaves[i].id), -1);
-        const std::size_t lane = i % 8;
         const Corners& c = probes.triangles[i];
-        leaves[i].v0_x[lane] = c.v0.x, leaves[i].v0_y[lane] = c.v0.y, leaves[i].v0_z[lane] = c.v0.z;
-        leaves[i].v1_x[lane] = c.v1.x, leaves[i].v1_y[lane] = c.v1.y, leaves[i].v1_z[lane] = c.v1.z;
-        leaves[i].v2_x[lane] = c.v2.x, leaves[i].v2_y[lane] = c.v2.y, leaves[i].v2_z[lane] = c.v2.z;
-        leaves[i].id[lane] = 0;
+        set_triangle(leaves, i, i % leaves.width(), {c.v0, c.v1, c.v2}, 0);
     }
     const std::vector<RayHit> hits = kernels.hit_leaves(leaves, probes.rays);
     for (std::size_t i = 0; i < hits.size(); ++i) {

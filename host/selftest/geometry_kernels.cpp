@@ -9,28 +9,30 @@ namespace {
 constexpr int stack_size = 96;
 constexpr std::size_t work_group_size = 64; // one for all, as PoCL compiles anew for each
 
-Macros macros() {
-    return {{"BVH_STACK_SIZE", std::to_string(stack_size)}, {"HAS_AREA_LIGHT", "1"}};
+Macros macros(const Device& device) {
+    return {{"BVH_WIDTH", std::to_string(device.tuning.bvh_width)},
+            {"BVH_STACK_SIZE", std::to_string(stack_size)},
+            {"HAS_AREA_LIGHT", "1"}};
 }
 
 } // namespace
 
 GeometryMesh::GeometryMesh(const Device& device, const TriangleSoup& mesh) : soup(mesh) {
-    const Bvh bvh = build_bvh(soup);
+    const Bvh bvh = build_bvh(soup, device.tuning.bvh_width);
     if (bvh.stack_size > stack_size)
         fail("the tree of a mesh of {} triangles needs a stack of {}", soup.v0.size(), bvh.stack_size);
     for (std::size_t i = 0; i < soup.v0.size(); ++i)
         triangles.push_back(flat_triangle(soup.v0[i], soup.v1[i], soup.v2[i]));
-    nodes = Buffer<BvhNode>(device, "BVH nodes", bvh.nodes);
-    leaves = Buffer<BvhLeaf>(device, "BVH leaves", bvh.leaves);
+    nodes = Buffer<std::uint32_t>(device, "BVH nodes", bvh.nodes.words());
+    leaves = Buffer<std::uint32_t>(device, "BVH leaves", bvh.leaves.words());
     on_device = Buffer<Triangle>(device, "triangles", triangles);
 }
 
 GeometryKernels::GeometryKernels(const Setting& setting)
-    : device_(setting.device), program_(build(setting, "geometry.cl", macros())) {}
+    : device_(setting.device), program_(build(setting, "geometry.cl", macros(setting.device))) {}
 
 GeometryKernels::GeometryKernels(const Device& device, const std::string& text)
-    : device_(device), program_(build_program_from_text(device, "geometry.cl", text, macros(), {})) {}
+    : device_(device), program_(build_program_from_text(device, "geometry.cl", text, macros(device), {})) {}
 
 template <typename... Arguments>
 void GeometryKernels::run(const char* name, std::size_t count, const Arguments&... arguments) const {
@@ -42,11 +44,10 @@ void GeometryKernels::run(const char* name, std::size_t count, const Arguments&.
     device_.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(padded), ::cl::NDRange(work_group_size));
 }
 
-std::vector<RayHit> GeometryKernels::hit_leaves(const std::vector<BvhLeaf>& leaves,
-                                                const std::vector<Ray>& rays) const {
+std::vector<RayHit> GeometryKernels::hit_leaves(const BvhBlocks& leaves, const std::vector<Ray>& rays) const {
     const Buffer<RayHit> hits(device_, "hits", rays.size());
-    run("hit_leaves", rays.size(), Buffer<BvhLeaf>(device_, "leaves", leaves), Buffer<Ray>(device_, "rays", rays),
-        hits);
+    run("hit_leaves", rays.size(), Buffer<std::uint32_t>(device_, "leaves", leaves.words()),
+        Buffer<Ray>(device_, "rays", rays), hits);
     return hits.read(device_);
 }
 

@@ -16,8 +16,8 @@ struct GeometryMesh {
 
     TriangleSoup soup;
     std::vector<Triangle> triangles;
-    Buffer<BvhNode> nodes;
-    Buffer<BvhLeaf> leaves;
+    Buffer<std::uint32_t> nodes;
+    Buffer<std::uint32_t> leaves;
     Buffer<Triangle> on_device;
 };
 
@@ -32,7 +32,7 @@ class GeometryKernels {
     const Device& device() const { return device_; }
 
     /// Ray i against leaf i alone.
-    std::vector<RayHit> hit_leaves(const std::vector<BvhLeaf>& leaves, const std::vector<Ray>& rays) const;
+    std::vector<RayHit> hit_leaves(const BvhBlocks& leaves, const std::vector<Ray>& rays) const;
 
     std::vector<RayHit> closest(const GeometryMesh& mesh, const std::vector<Ray>& rays) const;
     std::vector<std::int32_t> any(const GeometryMesh& mesh, const std::vector<Ray>& rays) const;

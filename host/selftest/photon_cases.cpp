@@ -1,5 +1,6 @@
 #include "selftest/photon_measures.h"
 
+#include "bvh/bvh.h"
 #include "opencl/buffer.h"
 #include "render/radius_schedule.h"
 #include "render/sobol.h"
@@ -41,7 +42,8 @@ std::size_t whole_groups(std::size_t count) {
 } // namespace
 
 ::cl::Program build_cores(const Setting& setting) {
-    return build(setting, "photon.cl", {{"BVH_STACK_SIZE", "8"}});
+    return build(setting, "photon.cl",
+                 {{"BVH_WIDTH", std::to_string(setting.device.tuning.bvh_width)}, {"BVH_STACK_SIZE", "8"}});
 }
 
 /// pcg4d, the numbers made of it and Sobol' numbers, bit by bit.
@@ -163,25 +165,18 @@ Measurement density(const Setting& setting, const ::cl::Program& cores) {
     const auto corner = [](float x, float y) { return std::array{x, y, 0.37F}; };
     const std::array<std::array<float, 3>, 3> vertices{corner(-1.0F, -0.9F), corner(0.93F, -1.0F), corner(0.11F, 1.0F)};
     Triangle triangle{};
-    BvhLeaf leaf{};
-    std::fill(std::begin(leaf.id), std::end(leaf.id), -1);
-    leaf.id[0] = 0;
-    leaf.v0_x[0] = triangle.v0_x = vertices[0][0];
-    leaf.v0_y[0] = triangle.v0_y = vertices[0][1];
-    leaf.v0_z[0] = triangle.v0_z = vertices[0][2];
-    leaf.v1_x[0] = vertices[1][0];
-    leaf.v1_y[0] = vertices[1][1];
-    leaf.v1_z[0] = vertices[1][2];
-    leaf.v2_x[0] = vertices[2][0];
-    leaf.v2_y[0] = vertices[2][1];
-    leaf.v2_z[0] = vertices[2][2];
+    BvhBlocks leaf = empty_leaves(1, setting.device.tuning.bvh_width);
+    set_triangle(leaf, 0, 0, {V3f(vertices[0]), V3f(vertices[1]), V3f(vertices[2])}, 0);
+    triangle.v0_x = vertices[0][0];
+    triangle.v0_y = vertices[0][1];
+    triangle.v0_z = vertices[0][2];
     triangle.edge1_x = vertices[1][0] - vertices[0][0];
     triangle.edge1_y = vertices[1][1] - vertices[0][1];
     triangle.edge2_x = vertices[2][0] - vertices[0][0];
     triangle.edge2_y = vertices[2][1] - vertices[0][1];
     triangle.normal_z = 1.0F;
     triangle.extent = 1.0F;
-    const Buffer<BvhLeaf> leaves(setting.device, "selftest leaf", std::vector{leaf});
+    const Buffer<std::uint32_t> leaves(setting.device, "selftest leaf", leaf.words());
     const Buffer<Triangle> triangles(setting.device, "selftest triangle", std::vector{triangle});
 
     const std::size_t rays = whole_groups(inputs(setting, 65536, 512));

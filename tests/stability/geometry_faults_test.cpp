@@ -60,11 +60,11 @@ TEST(GeometryStability, FaultsInTheOffsetFromSurfacesAreFound) {
 
 TEST(GeometryStability, FaultsInTheBoxesAreFound) {
     // Only exits and entries as tight as the plain slab test, and the hits that it is given to find.
-    EXPECT_GT(
-        worst_of_changed("const float8 exit_t = min(min(exit_x, exit_y), min(exit_z, (float8)(t_max)));",
-                         "const float8 exit_t = min(min(exit_x, exit_y), min(exit_z, (float8)(t_max))) * 0.999998f;",
-                         leaks_by_scale),
-        0.0);
+    EXPECT_GT(worst_of_changed(
+                  "const BvhFloats exit_t = min(min(exit_x, exit_y), min(exit_z, (BvhFloats)(t_max)));",
+                  "const BvhFloats exit_t = min(min(exit_x, exit_y), min(exit_z, (BvhFloats)(t_max))) * 0.999998f;",
+                  leaks_by_scale),
+              0.0);
 }
 
 /// Rows of case, parameter, error: from before exact edge functions and offsets that follow the coordinates.

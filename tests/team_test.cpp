@@ -1,0 +1,147 @@
+// Renders on several devices, and on devices that fail: host/render/team.h. The devices are one, opened several times;
+// tests/backends_test.cpp has different ones.
+
+#include "child_process.h"
+#include "render/team.h"
+#include "scene_folder.h"
+#include "test_scenes.h"
+
+#include <OpenImageIO/imageio.h>
+#include <cstring>
+#include <memory>
+
+namespace tristim::test {
+namespace {
+
+using Bits = std::vector<std::array<float, 3>>;
+
+constexpr std::uint64_t passes = 16;
+constexpr const char* scene_path = TRISTIM_SOURCE_DIR "/meshes/dispersion/scene.pbrt";
+
+RenderOptions options() {
+    RenderOptions options = small_render("tristimulus:2", 16, 12, 2048, 0.1, 16);
+    options.radius.reset();
+    return options;
+}
+
+/// The test device, opened anew, with what is to fail on each ("" if nothing).
+std::vector<Device> devices(const std::vector<std::string>& faults) {
+    std::vector<Device> opened;
+    for (const std::string& fault : faults) {
+        opened.push_back(open_device(std::to_string(test_device().info.index)));
+        if (!fault.empty())
+            opened.back().faults = std::make_shared<FaultPlan>(fault);
+    }
+    return opened;
+}
+
+RenderOutcome render(const std::vector<std::string>& faults) {
+    Team team(load_scene(scene_path), options(), devices(faults));
+    team.render({passes, {}}, [](std::uint64_t) { return true; });
+    return team.outcome();
+}
+
+Bits bits(const RenderOutcome& outcome) {
+    return developed(outcome.sums, options()).xyz;
+}
+
+/// The image of the first passes by one renderer.
+Bits alone(std::uint64_t count) {
+    Renderer renderer(load_scene(scene_path), options(), test_device());
+    for (std::uint32_t pass = 0; pass < count; ++pass)
+        renderer.render_pass(pass);
+    return renderer.film().xyz;
+}
+
+void expect_words(const std::string& text, const std::vector<std::string>& words) {
+    for (const std::string& word : words)
+        EXPECT_NE(text.find(word), std::string::npos) << text;
+}
+
+bool same(const Bits& a, const Bits& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+}
+
+TEST(Team, SharingDoesNotShow) {
+    const Bits expected = alone(passes);
+    for (const std::size_t count : {1, 3}) {
+        const RenderOutcome outcome = render(std::vector<std::string>(count));
+        EXPECT_TRUE(same(bits(outcome), expected)) << count << " devices";
+        EXPECT_EQ(outcome.statistics.passes, passes);
+        EXPECT_EQ(outcome.statistics.photons_emitted, passes * 2048);
+        ASSERT_EQ(outcome.shares.size(), count);
+        std::uint64_t sum = 0;
+        for (const DeviceShare& share : outcome.shares) {
+            EXPECT_GT(share.passes, 0U);
+            EXPECT_EQ(share.failure, "");
+            sum += share.passes;
+        }
+        EXPECT_EQ(sum, passes);
+        EXPECT_GE(outcome.sums.rays.camera, passes * 16 * 12);
+    }
+}
+
+TEST(Team, OthersDoWhatAFailedDeviceLost) {
+    const Bits expected = alone(passes);
+    // Some launches are those of the pilot pass, which has its device left out from the start; others come in passes.
+    for (const char* fault : {"build:2", "allocate:9", "launch:3", "launch:60", "lost:61", "launch:75", "lost:90"}) {
+        const RenderOutcome outcome = render({"", fault});
+        EXPECT_TRUE(same(bits(outcome), expected)) << fault;
+        EXPECT_EQ(outcome.statistics.passes, passes) << fault;
+        EXPECT_EQ(outcome.shares[0].failure, "") << fault;
+        EXPECT_NE(outcome.shares[1].failure, "") << fault;
+    }
+}
+
+TEST(Team, OfTheOnlyDeviceThePassesDoneAreKept) {
+    for (const char* fault : {"launch:120", "lost:120"}) {
+        const RenderOutcome outcome = render({fault});
+        EXPECT_NE(outcome.shares[0].failure, "") << fault;
+        EXPECT_GE(outcome.statistics.passes, 1U) << fault;
+        EXPECT_LT(outcome.statistics.passes, passes) << fault;
+        EXPECT_TRUE(same(bits(outcome), alone(outcome.statistics.passes))) << fault;
+    }
+}
+
+TEST(Team, WithoutAnyDeviceItSaysWhy) {
+    expect_words(error_of([] {
+                     Team(load_scene(scene_path), options(), devices({"allocate:1", "build:1"}));
+                 }),
+                 {"out of device memory"});
+    RenderOptions statistics = options();
+    statistics.statistics_radius = true;
+    expect_words(error_of([&] {
+                     Team(load_scene(scene_path), statistics, devices({"", ""}));
+                 }),
+                 {"--radius statistics", "one --device"});
+}
+
+TEST(Team, TheCommandSavesAnImageAndFails) {
+    const SceneFolder folder;
+    const std::string path = folder.path("a.exr");
+    const auto render_with = [&](const std::string& fault, const std::string& device) {
+        return run_tristim({"render", scene_path, "--resolution", "16x12", "--photons", "2048", "--passes", "16",
+                            "--device", device, "--outfile", path},
+                           {{"TRISTIM_FAULT", fault}});
+    };
+    const ChildResult lost = render_with("lost:120", "0");
+    EXPECT_EQ(lost.exit_code, 1);
+    expect_words(lost.standard_error, {"error: device", "failed after", "CL_DEVICE_NOT_AVAILABLE"});
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    ASSERT_TRUE(input) << OIIO::geterror();
+    EXPECT_GE(input->spec().get_int_attribute("tristim:passes"), 1);
+    EXPECT_LT(input->spec().get_int_attribute("tristim:passes"), 16);
+
+    const ChildResult shared = render_with("lost:120:1", "0,0");
+    EXPECT_EQ(shared.exit_code, 0) << shared.standard_error;
+    expect_words(shared.standard_error, {"warning: device", "16 passes on", "CL_DEVICE_NOT_AVAILABLE"});
+
+    EXPECT_EQ(render_with("", "0,").exit_code, 1);
+    EXPECT_EQ(render_with("nonsense", "0").exit_code, 1);
+    const ChildResult one = run_tristim({"bench-pass", scene_path, "--device", "0,0"});
+    EXPECT_EQ(one.exit_code, 1);
+    expect_words(one.standard_error, {"runs on one device", "0,0"});
+}
+
+} // namespace
+} // namespace tristim::test
