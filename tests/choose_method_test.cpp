@@ -158,6 +158,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,
 /// Caustics of dispersive glass seen through it: light and eye must keep the same wavelength to meet, and the fewer
 /// there are, the oftener they do. On the prism's screen nothing has to meet, and several wavelengths average.
 TEST(ChooseMethod, OneWavelengthHasLessPathVarianceBehindDispersiveGlassAndMoreOnThePrismsScreen) {
+    if (!long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     const auto variances = [](const std::string& name, double radius) {
         RenderOptions options = small_render("illuminant-mixture:4", 64, 64, 16384, radius, 12);
         options.auto_method = true;

@@ -168,6 +168,8 @@ TEST(DeviceTable, TuningDoesNotChangeTheImage) {
 }
 
 TEST(DeviceTable, NarrowTreesFindTheSameHits) {
+    if (!test::long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     const std::vector<FilmPixel> wide = film_with("bvh_width=8");
     std::vector<std::string> widths{"bvh_width=4"};
     if (test::long_tests())

@@ -30,6 +30,8 @@ class DirectLight : public testing::TestWithParam<Consistency> {};
 
 /// A rough sheet lit by sampling the light, and by photons that the sheet takes: one flux, one BSDF.
 TEST_P(DirectLight, SampledAndByPhotonsIsTheSame) {
+    if (std::string(GetParam().name) == "glass_area" && !long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     constexpr int width = 4, height = 4;
     Scene scene;
     scene.path = "rough";
@@ -63,6 +65,8 @@ class PhotonRoughness : public testing::TestWithParam<Border> {};
 /// floor under an area light, which it mirrors and, of glass, lets through, seen from above. A
 /// box thinner than the search radius must not mix up the photons on its two faces.
 TEST_P(PhotonRoughness, DoesNotChangeTheImage) {
+    if (std::string(GetParam().name) != "glass" && !long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     constexpr int width = 4, height = 4, passes = 64;
     Scene scene;
     scene.path = "border";
