@@ -228,6 +228,8 @@ void add_lobes(const RoughSurface& surface, const Material& m, const std::vector
 /// An area light, or a uniform environment, reflected in a nearly specular surface (or seen through it), by light
 /// sampling and by chance together: ∫ f cos over the light, and the albedo.
 TEST_P(SeenLight, IsTheQuadrature) {
+    if (GetParam().conductor && !long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     constexpr int width = 3, height = 3;
     const RoughSurface surface{"", GetParam().conductor, true, GetParam().alpha_u, GetParam().alpha_v};
     Scene scene;

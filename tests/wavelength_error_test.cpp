@@ -70,6 +70,8 @@ struct Bound {
 class WavelengthError : public testing::TestWithParam<Bound> {};
 
 TEST_P(WavelengthError, IsManyTimesBelowThatOfRandomWavelengths) {
+    if (std::string(GetParam().scene) != "mercury-lines" && !long_tests())
+        GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     constexpr std::uint32_t passes = 2048;
     const Bound& bound = GetParam();
     const MirrorScene scene(bound.scene);
