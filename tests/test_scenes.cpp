@@ -1,6 +1,7 @@
 #include "test_scenes.h"
 
 #include "meshes/icosphere.h"
+#include "scene/geometry.h"
 
 #include <array>
 #include <cmath>
@@ -95,12 +96,7 @@ int add_area_light(Scene& scene, const Spectrum& emission, double radiance) {
 
 void add_parallelogram(Scene& scene, const V3d& corner, const V3d& edge1, const V3d& edge2, int material,
                        int area_light) {
-    Shape shape;
-    shape.mesh.positions = {corner, corner + edge1, corner + edge1 + edge2, corner + edge2};
-    shape.mesh.triangles = {{0U, 1U, 2U}, {0U, 2U, 3U}};
-    shape.material = material;
-    shape.area_light = area_light;
-    scene.shapes.push_back(shape);
+    scene.shapes.push_back(parallelogram(corner, edge1, edge2, material, area_light));
 }
 
 void add_box(Scene& scene, const V3d& low, const V3d& high, bool inwards, int material, int area_light) {

@@ -6,6 +6,7 @@
 #include "meshes/icosphere.h"
 #include "opencl/errors.h"
 #include "render/renderer.h"
+#include "scene/geometry.h"
 #include "selftest/selftest.h"
 
 #include <algorithm>
@@ -18,15 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_passes = 9;
 constexpr double most_seconds = 5.0; ///< of passes, as soon as there is one
-
-void add_wall(Scene& scene, const V3d& corner, const V3d& edge1, const V3d& edge2, int material, int area_light = -1) {
-    Shape shape;
-    shape.mesh.positions = {corner, corner + edge1, corner + edge1 + edge2, corner + edge2};
-    shape.mesh.triangles = {{0U, 1U, 2U}, {0U, 2U, 3U}};
-    shape.material = material;
-    shape.area_light = area_light;
-    scene.shapes.push_back(shape);
-}
 
 /// A room |x|, |z| <= 1, 0 <= y <= 2, open to the camera at z = -3.5, which looks along +z.
 Scene standard_scene() {
@@ -46,12 +38,12 @@ Scene standard_scene() {
     lamp.scale = 10.0;
     scene.lights = {lamp};
 
-    add_wall(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 0);
-    add_wall(scene, {-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, 0);
-    add_wall(scene, {-1, 0, 1}, {0, 2, 0}, {2, 0, 0}, 0);
-    add_wall(scene, {-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, 1);
-    add_wall(scene, {1, 0, -1}, {0, 0, 2}, {0, 2, 0}, 0);
-    add_wall(scene, {-0.3, 1.99, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, 0, 0);
+    scene.shapes = {parallelogram({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 0),
+                    parallelogram({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, 0),
+                    parallelogram({-1, 0, 1}, {0, 2, 0}, {2, 0, 0}, 0),
+                    parallelogram({-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, 1),
+                    parallelogram({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, 0),
+                    parallelogram({-0.3, 1.99, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, 0, 0)};
 
     Shape ball;
     const Icosphere sphere = make_icosphere(3);

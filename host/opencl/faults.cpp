@@ -14,14 +14,16 @@ FaultPlan::FaultPlan(const std::string& text) {
     const std::size_t first = text.find(':');
     const std::size_t second = text.find(':', first + 1);
     const auto kind = kinds.find(text.substr(0, first));
+    const auto check = [&](bool good) {
+        if (!good)
+            fail("bad TRISTIM_FAULT \"{}\": it is KIND:COUNT[:PLACE], with KIND allocate, build, launch or lost", text);
+    };
     const auto number = [&](std::size_t from, std::size_t to) {
         const auto value = parse_number(text.substr(from, to - from));
-        if (!value || *value < 0.0 || *value > 1e9)
-            fail("bad TRISTIM_FAULT \"{}\": it is KIND:COUNT[:PLACE], with KIND allocate, build, launch or lost", text);
+        check(value && *value >= 0.0 && *value <= 1e9);
         return *value;
     };
-    if (kind == kinds.end() || first == std::string::npos)
-        fail("bad TRISTIM_FAULT \"{}\": it is KIND:COUNT[:PLACE], with KIND allocate, build, launch or lost", text);
+    check(kind != kinds.end() && first != std::string::npos);
     kind_ = kind->second;
     left_ = static_cast<long>(number(first + 1, second == std::string::npos ? text.size() : second));
     if (second != std::string::npos)

@@ -50,8 +50,7 @@ PhotonSorter::Summary PhotonSorter::summary(const Device& device) const {
     const std::uint64_t steps = values[0] / blocks_ + 2 * totals_.size(); // of sort_count and sort_scatter
     if (steps > tuning_.loop_steps)
         fail("device '{}' may end loops of more than {} steps, too few to sort a pass's {} photons: lower the photons "
-             "per "
-             "pass",
+             "per pass",
              device.info.name, tuning_.loop_steps, values[0]);
     return {values[0], values[1]};
 }

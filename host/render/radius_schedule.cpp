@@ -1,5 +1,6 @@
 #include "render/radius_schedule.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tristim {
@@ -15,6 +16,11 @@ double radius_scale(std::uint32_t pass, double alpha) {
         return std::sqrt(ratio / std::tgamma(1.0 + alpha));
     }
     return std::exp(0.5 * (std::lgamma(i + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(i + 1.0)));
+}
+
+float largest_radius_floor(const SceneConstants& c) {
+    const float centre = std::max({std::abs(c.centre_x), std::abs(c.centre_y), std::abs(c.centre_z)});
+    return std::max(SMALLEST_RELATIVE_RADIUS * (centre + c.radius), SMALLEST_RADIUS);
 }
 
 } // namespace tristim

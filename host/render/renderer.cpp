@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -22,12 +21,6 @@ namespace {
 constexpr double photons_per_path = 1.5;
 /// Rays that bench-pass can record, per pixel and photon path.
 constexpr std::size_t recorded_rays_per_path = 24;
-
-/// The largest radius that kernels/grid.h's search_radius may ask for in a scene.
-float largest_radius_floor(const SceneConstants& c) {
-    const float centre = std::max({std::abs(c.centre_x), std::abs(c.centre_y), std::abs(c.centre_z)});
-    return std::max(SMALLEST_RELATIVE_RADIUS * (centre + c.radius), SMALLEST_RADIUS);
-}
 
 std::size_t rays_to_record(const RenderOptions& options) {
     if (!options.record_rays)

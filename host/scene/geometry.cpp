@@ -129,4 +129,13 @@ double area(const Mesh& mesh) {
     return sum;
 }
 
+Shape parallelogram(const V3d& corner, const V3d& edge1, const V3d& edge2, int material, int area_light) {
+    Shape shape;
+    shape.mesh.positions = {corner, corner + edge1, corner + edge1 + edge2, corner + edge2};
+    shape.mesh.triangles = {{0U, 1U, 2U}, {0U, 2U, 3U}};
+    shape.material = material;
+    shape.area_light = area_light;
+    return shape;
+}
+
 } // namespace tristim

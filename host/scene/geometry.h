@@ -53,4 +53,7 @@ inline constexpr double coarse_spacing = 0x1p-12;
 /// The surface area in scene units squared.
 double area(const Mesh& mesh);
 
+/// A parallelogram that faces where edge1 × edge2 points, of two triangles; `area_light` -1 for one that does not emit.
+Shape parallelogram(const V3d& corner, const V3d& edge1, const V3d& edge2, int material, int area_light = -1);
+
 } // namespace tristim
