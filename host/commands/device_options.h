@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/error.h"
 #include "opencl/device.h"
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,12 @@ inline void add_device_option(CLI::App& command, std::string& device) {
             "OpenCL device: index, cpu, gpu, or part of its name or platform; render shares passes among several "
             "with commas between [TRISTIM_DEVICE, else first CPU]")
         ->type_name("INDEX|NAME");
+}
+
+/// Throws Error unless --effort, the inputs of the selftest over their usual number, makes sense.
+inline void check_effort(double effort) {
+    if (!(effort > 0.0 && effort <= 1000.0))
+        fail("--effort must be above 0 and at most 1000, not {}", effort);
 }
 
 /// Registers --tuning, for open_tuned_device().

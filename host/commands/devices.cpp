@@ -66,8 +66,7 @@ void print_json(const std::vector<DeviceInfo>& devices, int chosen) {
 }
 
 void check(const Command& command, const std::vector<DeviceInfo>& devices) {
-    if (!(command.effort > 0.0 && command.effort <= 1000.0))
-        fail("--effort must be above 0 and at most 1000, not {}", command.effort);
+    check_effort(command.effort);
     if (!(command.time > 0.0 && command.time <= 1e6))
         fail("--time must be above 0 and at most 1000000 seconds, not {}", command.time);
     const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();

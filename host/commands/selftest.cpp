@@ -52,8 +52,7 @@ void run(const Command& command) {
     const std::vector<selftest::Case> cases = chosen_cases(command.groups);
     if (command.list)
         return list(cases);
-    if (!(command.effort > 0.0 && command.effort <= 1000.0))
-        fail("--effort must be above 0 and at most 1000, not {}", command.effort);
+    check_effort(command.effort);
     if (!command.curves.empty())
         check_output_file(command.curves);
     const Device device = open_device(command.device);
