@@ -2,19 +2,62 @@
 // the number of threads. A radix sort of (bucket, photon) pairs in two passes of RADIX_BITS bits.
 #include "grid.h"
 
-// One work-item in all. Turns the number of photons of each of photon_pass's work-items, from `first` to before `end`, into where its
-// photons begin among all. summary: [0] photons in all so far, [1] the most that one item would have stored.
-kernel void photon_offsets(const global uint* item_counts, uint first, uint end, uint capacity, global uint* item_offsets,
-                           global uint* summary) {
-    uint total = first == 0u ? 0u : summary[0], most = first == 0u ? 0u : summary[1];
-    for (uint i = first; i < end; ++i) {
-        item_offsets[i] = total;
-        total += min(item_counts[i], capacity);
-        most = max(most, item_counts[i]);
+// The sum of `value` over the group's work-items before this one (Hillis & Steele 1986, "Data Parallel Algorithms"); *total: over all of
+// them. sums: a number for each.
+uint sum_before(uint value, local uint* sums, uint* total) {
+    const uint i = (uint)get_local_id(0), n = (uint)get_local_size(0);
+    sums[i] = value;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint distance = 1; distance < n; distance *= 2) {
+        const uint more = i < distance ? 0u : sums[i - distance];
+        barrier(CLK_LOCAL_MEM_FENCE);
+        sums[i] += more;
+        barrier(CLK_LOCAL_MEM_FENCE);
     }
-    item_offsets[end] = total;
-    summary[0] = total;
-    summary[1] = most;
+    *total = sums[n - 1];
+    const uint before = sums[i] - value;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return before;
+}
+
+// Turns numbers[0 … rows · columns) into the sums of those before them, in two steps of a work-group per row each.
+kernel void scan_rows(uint columns, const global uint* numbers, global uint* row_sums, local uint* sums) {
+    const uint row = (uint)get_group_id(0);
+    uint sum = 0, total;
+    for (uint column = (uint)get_local_id(0); column < columns; column += (uint)get_local_size(0))
+        sum += numbers[row * columns + column];
+    sum_before(sum, sums, &total);
+    if (get_local_id(0) == 0)
+        row_sums[row] = total;
+}
+
+kernel void scan_columns(uint columns, const global uint* row_sums, global uint* numbers, local uint* sums) {
+    const uint row = (uint)get_group_id(0), n = (uint)get_local_size(0);
+    const uint each = (columns + n - 1u) / n, first = min((uint)get_local_id(0) * each, columns);
+    const uint begin = row * columns + first, end = row * columns + min(first + each, columns);
+    uint rows_before = 0, before_row, sum = 0, total;
+    for (uint r = (uint)get_local_id(0); r < row; r += n)
+        rows_before += row_sums[r];
+    sum_before(rows_before, sums, &before_row);
+    for (uint i = begin; i < end; ++i)
+        sum += numbers[i];
+    sum = before_row + sum_before(sum, sums, &total);
+    for (uint i = begin; i < end; ++i) {
+        const uint number = numbers[i];
+        numbers[i] = sum;
+        sum += number;
+    }
+}
+
+// One work-item for each of `items` of photon_pass and for what is left of the rows that are scanned next, to get where its photons
+// begin among all. summary[1], 0 at first: the most photons that one item would have stored.
+kernel void photon_counts(const global uint* item_counts, uint items, uint capacity, global uint* item_offsets,
+                          global uint* summary) {
+    const uint item = (uint)get_global_id(0);
+    const uint count = item < items ? item_counts[item] : 0u;
+    item_offsets[item] = min(count, capacity);
+    if (count > summary[1])
+        atomic_max(summary + 1, count);
 }
 
 // One work-item per item of photon_pass: the pairs of its photons.
@@ -37,58 +80,35 @@ kernel void photon_keys(const global SceneConstants* constants, const global Pho
 // Where block number `block` of `blocks` begins in n pairs.
 uint block_begin(uint n, uint block, uint blocks) { return (uint)((ulong)n * block / blocks); }
 
-// One work-item per block of pairs: how many pairs have each digit; histogram[digit · blocks + block].
-kernel void sort_count(const global uint2* pairs, const global uint* summary, uint shift, global uint* histogram) {
+// One work-item per block of n pairs: how many pairs have each digit; histogram[digit · blocks + block], to be scanned.
+kernel void sort_count(const global uint2* pairs, uint n, uint shift, global uint* histogram) {
     const uint block = (uint)get_global_id(0), blocks = (uint)get_global_size(0);
     uint counts[DIGITS];
     for (uint d = 0; d < DIGITS; ++d)
         counts[d] = 0;
-    const uint end = block_begin(summary[0], block + 1, blocks);
-    for (uint i = block_begin(summary[0], block, blocks); i < end; ++i)
+    const uint end = block_begin(n, block + 1, blocks);
+    for (uint i = block_begin(n, block, blocks); i < end; ++i)
         ++counts[pairs[i].x >> shift & (DIGITS - 1u)];
     for (uint d = 0; d < DIGITS; ++d)
         histogram[d * blocks + block] = counts[d];
 }
 
-// Counts become positions in two steps of a work-item per digit each. One work-item for all would take DIGITS · blocks steps, and
-// llvmpipe (Mesa 22.3) ends a kernel's loops after 65535 of them without a word.
-kernel void sort_totals(uint blocks, const global uint* histogram, global uint* totals) {
-    const uint digit = (uint)get_global_id(0);
-    uint total = 0;
-    for (uint block = 0; block < blocks; ++block)
-        total += histogram[digit * blocks + block];
-    totals[digit] = total;
-}
-
-kernel void sort_scan(uint blocks, const global uint* totals, global uint* histogram) {
-    const uint digit = (uint)get_global_id(0);
-    uint position = 0;
-    for (uint d = 0; d < digit; ++d)
-        position += totals[d];
-    for (uint block = 0; block < blocks; ++block) {
-        const uint count = histogram[digit * blocks + block];
-        histogram[digit * blocks + block] = position;
-        position += count;
-    }
-}
-
 // One work-item per block, as many as in sort_count.
-kernel void sort_scatter(const global uint2* pairs, const global uint* summary, uint shift, const global uint* histogram,
+kernel void sort_scatter(const global uint2* pairs, uint n, uint shift, const global uint* histogram,
                          global uint2* sorted) {
     const uint block = (uint)get_global_id(0), blocks = (uint)get_global_size(0);
     uint positions[DIGITS];
     for (uint d = 0; d < DIGITS; ++d)
         positions[d] = histogram[d * blocks + block];
-    const uint end = block_begin(summary[0], block + 1, blocks);
-    for (uint i = block_begin(summary[0], block, blocks); i < end; ++i)
+    const uint end = block_begin(n, block + 1, blocks);
+    for (uint i = block_begin(n, block, blocks); i < end; ++i)
         sorted[positions[pairs[i].x >> shift & (DIGITS - 1u)]++] = pairs[i];
 }
 
-// At least one work-item per pair and one more: bucket_begin[b] is where bucket b begins among the sorted pairs, for b from 0 to
+// At least one work-item per pair of n and one more: bucket_begin[b] is where bucket b begins among the sorted pairs, for b from 0 to
 // BUCKET_COUNT. Of the buckets between two pairs it fills `most`, after the first `skip`.
-kernel void bucket_ranges(const global uint2* pairs, const global uint* summary, uint skip, uint most,
-                          global uint* bucket_begin) {
-    const uint i = (uint)get_global_id(0), n = summary[0];
+kernel void bucket_ranges(const global uint2* pairs, uint n, uint skip, uint most, global uint* bucket_begin) {
+    const uint i = (uint)get_global_id(0);
     if (i > n)
         return;
     const uint first = skip + (i == 0 ? 0u : pairs[i - 1].x + 1u);

@@ -30,14 +30,15 @@ DeviceInfo able_device(cl_device_type type = CL_DEVICE_TYPE_CPU, const std::stri
 
 TEST(DeviceTable, CpusHaveTheValuesMeasuredOnPoCL) {
     const DeviceTuning tuning = device_tuning(able_device());
-    EXPECT_EQ(to_string(tuning), "pixel_group=16,item_group=8,paths_per_item=64,sort_groups=2,bvh_width=8,"
+    EXPECT_EQ(to_string(tuning), "pixel_group=16,item_group=8,paths_per_item=64,sort_groups=2,scan_group=1,bvh_width=8,"
                                  "loop_steps=4294967295");
     EXPECT_EQ(tuning, DeviceTuning{}) << "the default row";
 }
 
-TEST(DeviceTable, GpusHaveNarrowNodesAndWholeWarps) {
+TEST(DeviceTable, GpusHaveWholeWarpsAndFewPathsInARow) {
     const DeviceTuning tuning = device_tuning(able_device(CL_DEVICE_TYPE_GPU));
-    EXPECT_LT(tuning.bvh_width, 8);
+    EXPECT_LT(tuning.paths_per_item, DeviceTuning{}.paths_per_item);
+    EXPECT_GT(tuning.scan_group, 1U);
     EXPECT_EQ(tuning.pixel_group % 32, 0U);
     EXPECT_EQ(tuning.item_group % 32, 0U);
 }
@@ -66,6 +67,7 @@ TEST(DeviceTable, GroupsAreLoweredToWhatTheDeviceAllows) {
     const DeviceTuning tuning = device_tuning(gpu);
     EXPECT_EQ(tuning.pixel_group, 48U);
     EXPECT_EQ(tuning.item_group, 32U);
+    EXPECT_EQ(tuning.scan_group, 48U);
     gpu.largest_group = 1;
     EXPECT_EQ(device_tuning(gpu).pixel_group, 1U);
     EXPECT_EQ(device_tuning(gpu).item_group, 1U);

@@ -22,6 +22,7 @@ struct Case {
     double extent; ///< photons lie within ±extent
     float largest_radius;
     int radix_bits;
+    std::size_t scan_group = 1;
 };
 
 using Cell = std::array<int, 3>;
@@ -46,7 +47,8 @@ kernel void cells(const global Photon* photons, const global SceneConstants* con
 void check(const Case& c) {
     SCOPED_TRACE(c.name);
     const auto items = static_cast<std::uint32_t>(c.item_counts.size());
-    const Device& device = test_device();
+    Device device = test_device();
+    device.tuning.scan_group = c.scan_group;
     Random random(50);
     // Unused room holds photons too, which must not appear.
     std::vector<Photon> photons(std::size_t{items} * c.capacity);
@@ -55,12 +57,13 @@ void check(const Case& c) {
         photon.y = static_cast<float>(random(-c.extent, c.extent));
         photon.z = static_cast<float>(random(-c.extent, c.extent));
     }
-    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t /*group*/) {
-        device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items));
+    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t group) {
+        device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items),
+                                          work_items % group == 0 ? ::cl::NDRange(group) : ::cl::NullRange);
     };
     PhotonSorter sorter(device, {{"RADIX_BITS", std::to_string(c.radix_bits)}}, {}, c.radix_bits);
     sorter.allocate(device, items, c.capacity);
-    sorter.count(upload(c.item_counts), enqueue);
+    const PhotonSorter::Summary summary = sorter.count(device, upload(c.item_counts), enqueue);
 
     std::vector<std::uint32_t> stored; // the photons' indices, in order
     std::vector<std::uint32_t> offsets{0};
@@ -73,10 +76,9 @@ void check(const Case& c) {
         offsets.push_back(offsets.back() + count);
     }
     const auto count = static_cast<std::uint32_t>(stored.size());
-    const PhotonSorter::Summary summary = sorter.summary(device);
     ASSERT_EQ(summary.photons, count);
     EXPECT_EQ(summary.most_per_item, most);
-    EXPECT_EQ(sorter.item_offsets().read(device), offsets);
+    EXPECT_EQ(sorter.item_offsets().read(device, offsets.size()), offsets);
 
     const Buffer<SceneConstants> constants = upload(std::vector{SceneConstants{}});
     const Buffer<Photon> photon_buffer = upload(photons);
@@ -162,6 +164,14 @@ TEST(KernelSort, SortsManyPhotons) {
     check({"all in one cell", std::vector<std::uint32_t>(1000, 50), 64, 0.05, 10.0F, 9});
     check({"full items", std::vector<std::uint32_t>(1000, 64), 64, 3.0, 0.1F, 8});
     check({"large buckets", std::vector<std::uint32_t>(200, 64), 64, 3.0, 0.001F, 11});
+}
+
+TEST(KernelSort, AddsUpInGroups) {
+    const std::vector<std::uint32_t> counts(100, 20);
+    check({"no photons", {0, 0, 0}, 4, 1.0, 0.1F, 4, 8});
+    check({"three items among eight", {9, 2, 7}, 4, 1.0, 0.1F, 4, 8});
+    check({"groups of seven", counts, 32, 10.0, 0.05F, 6, 7});
+    check({"groups of 128", counts, 32, 10.0, 0.05F, 6, 128});
 }
 
 } // namespace

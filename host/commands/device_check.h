@@ -38,7 +38,8 @@ void merge_report(const std::string& line, DeviceCheck& check);
 
 /// Runs `command`, which is to print what check_device() reports, in a process of its own, so that a driver that
 /// crashes or hangs ends nothing else. It is ended after `seconds`.
-DeviceCheck check_in_child(const DeviceInfo& device, const std::vector<std::string>& command, double seconds);
+DeviceCheck check_in_child(const DeviceInfo& device, const std::vector<std::string>& command,
+                           const std::vector<std::string>& environment, double seconds);
 
 /// One line for each device, the ratio of its passes to the first's, and what failed below.
 std::string check_table(const std::vector<DeviceCheck>& checks);

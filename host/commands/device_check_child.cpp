@@ -15,25 +15,30 @@
 namespace tristim {
 namespace {
 
+/// As posix_spawn() takes them.
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+    std::vector<char*> pointers;
+    for (std::string& text : texts)
+        pointers.push_back(text.data());
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
 /// A running program whose standard output can be read.
 class Child {
   public:
-    explicit Child(const std::vector<std::string>& command) {
+    Child(std::vector<std::string> command, std::vector<std::string> environment) {
         std::array<int, 2> ends{};
         if (::pipe(ends.data()) != 0)
             fail("cannot start '{}': {}", command.front(), std::strerror(errno));
         output_ = ends[0];
-        std::vector<std::string> words = command;
-        std::vector<char*> argv;
-        for (std::string& word : words)
-            argv.push_back(word.data());
-        argv.push_back(nullptr);
         ::posix_spawn_file_actions_t actions;
         ::posix_spawn_file_actions_init(&actions);
         ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
         ::posix_spawn_file_actions_addclose(&actions, ends[0]);
         ::posix_spawn_file_actions_addclose(&actions, ends[1]);
-        const int error = ::posix_spawn(&process_, argv.front(), &actions, nullptr, argv.data(), environ);
+        const int error = ::posix_spawn(&process_, command.front().c_str(), &actions, nullptr, pointers(command).data(),
+                                        pointers(environment).data());
         ::posix_spawn_file_actions_destroy(&actions);
         ::close(ends[1]);
         if (error != 0) {
@@ -90,9 +95,10 @@ void merge_lines(std::string& text, DeviceCheck& check) {
 
 } // namespace
 
-DeviceCheck check_in_child(const DeviceInfo& device, const std::vector<std::string>& command, double seconds) {
+DeviceCheck check_in_child(const DeviceInfo& device, const std::vector<std::string>& command,
+                           const std::vector<std::string>& environment, double seconds) {
     DeviceCheck check = unfinished_check(device);
-    Child child(command);
+    Child child(command, environment);
     const Stopwatch stopwatch;
     std::string text;
     while (child.read(seconds - stopwatch.seconds(), text)) {

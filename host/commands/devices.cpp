@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace tristim {
 namespace {
@@ -65,7 +66,17 @@ void print_json(const std::vector<DeviceInfo>& devices, int chosen) {
     fmt::print("{}\n", list.dump(2));
 }
 
-void check(const Command& command, const std::vector<DeviceInfo>& devices) {
+/// The variables of this process.
+std::vector<std::string> environment() {
+    std::vector<std::string> variables;
+    for (char** variable = environ; *variable != nullptr; ++variable)
+        variables.emplace_back(*variable);
+    return variables;
+}
+
+/// `original` is the environment from before the first OpenCL call: loaders have been seen to cut OCL_ICD_FILENAMES
+/// at its first colon, in place, so that child processes would find one device only.
+void check(const Command& command, const std::vector<DeviceInfo>& devices, const std::vector<std::string>& original) {
     check_effort(command.effort);
     if (!(command.time > 0.0 && command.time <= 1e6))
         fail("--time must be above 0 and at most 1000000 seconds, not {}", command.time);
@@ -83,7 +94,7 @@ void check(const Command& command, const std::vector<DeviceInfo>& devices) {
         checks.push_back(check_in_child(device,
                                         {program, "devices", "--check-alone", std::to_string(device.index), "--effort",
                                          fmt::format("{}", command.effort)},
-                                        command.time));
+                                        original, command.time));
     }
     status.finish();
     fmt::print("{}{}", command.json ? check_json(checks) : check_table(checks), command.json ? "\n" : "");
@@ -99,6 +110,7 @@ void run(const Command& command) {
         });
         return;
     }
+    const std::vector<std::string> original = environment();
     std::vector<DeviceInfo> devices = list_devices();
     if (devices.empty())
         fail("no OpenCL device found: install an OpenCL platform (Debian: apt install pocl-opencl-icd)");
@@ -109,7 +121,7 @@ void run(const Command& command) {
             devices.push_back(device.info);
     }
     if (command.check)
-        check(command, devices);
+        check(command, devices, original);
     else if (command.json)
         print_json(devices, chosen);
     else

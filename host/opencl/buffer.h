@@ -34,6 +34,9 @@ class Buffer {
     /// Sets every byte-pattern element to `value` (enqueued, not blocking).
     void fill(const Device& device, const T& value) const;
 
+    /// Copies element `from` to element `to` of another buffer (enqueued, not blocking).
+    void copy_element(const Device& device, std::size_t from, const Buffer& other, std::size_t to) const;
+
   private:
     std::string name_;
     std::size_t count_ = 0;
@@ -74,6 +77,12 @@ template <typename T>
 void Buffer<T>::fill(const Device& device, const T& value) const {
     device.before(DeviceCall::Copy);
     device.queue.enqueueFillBuffer(buffer_, value, 0, sizeof(T) * (count_ > 0 ? count_ : 1));
+}
+
+template <typename T>
+void Buffer<T>::copy_element(const Device& device, std::size_t from, const Buffer& other, std::size_t to) const {
+    device.before(DeviceCall::Copy);
+    device.queue.enqueueCopyBuffer(buffer_, other.buffer_, from * sizeof(T), to * sizeof(T), sizeof(T));
 }
 
 } // namespace tristim

@@ -15,9 +15,11 @@ struct DeviceTuning {
     std::size_t pixel_group = 16;      ///< work-group size of kernels with a work-item per pixel or photon
     std::size_t item_group = 8;        ///< the same where each work-item does much
     std::uint32_t paths_per_item = 64; ///< photon paths that a work-item traces, one after the other: PATHS_PER_ITEM
-    std::uint32_t sort_groups = 2;     ///< groups of item_group per compute unit that sort photons
-    int bvh_width = 8;                 ///< children of a BVH node and triangles of a leaf: BVH_WIDTH, 8, 4 or 2
-    std::uint32_t loop_steps = ~0U;    ///< after so many a work-item's loops may end without a word
+    std::uint32_t sort_groups =
+        2; ///< groups of item_group per compute unit that sort photons, a block of them by each item
+    std::size_t scan_group = 1;     ///< work-items that share a row of counts to add up, for the sort
+    int bvh_width = 8;              ///< children of a BVH node and triangles of a leaf: BVH_WIDTH, 8, 4 or 2
+    std::uint32_t loop_steps = ~0U; ///< after so many a work-item's loops may end without a word
 
     bool ends_loops() const { return loop_steps != ~0U; }
 

@@ -26,17 +26,14 @@ class PhotonSorter {
     /// Runs a kernel with so many work-items in groups of so many.
     using Enqueue = std::function<void(const ::cl::Kernel&, std::size_t items, std::size_t group)>;
 
-    /// After photon_pass: counts its photons (item_counts), on the device.
-    void count(const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue);
-
     struct Summary {
         std::uint32_t photons;       ///< in all
         std::uint32_t most_per_item; ///< that one item would have stored; more than the capacity: some are missing
     };
-    /// What count() found; waits for the device.
-    Summary summary(const Device& device) const;
+    /// After photon_pass: counts its photons (item_counts) and waits for the device.
+    Summary count(const Device& device, const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue);
 
-    /// Sorts them by cells of about twice the largest radius.
+    /// Sorts the photons that were counted by cells of about twice the largest radius.
     void sort(const Buffer<SceneConstants>& constants, const Buffer<Photon>& photons,
               const Buffer<std::uint32_t>& largest_radius, const Enqueue& enqueue);
 
@@ -49,24 +46,28 @@ class PhotonSorter {
     std::vector<std::pair<std::string, std::uint64_t>> sizes() const;
 
   private:
+    std::uint32_t rows() const { return 1U << static_cast<unsigned>(radix_bits_); }
+    void scan(const Buffer<std::uint32_t>& numbers, const Enqueue& enqueue);
+
     DeviceTuning tuning_;
     int radix_bits_ = 0;
     std::uint32_t blocks_ =
         0; ///< pieces that pairs are sorted in, by a work-item each; the result does not depend on it
     std::uint32_t items_ = 0;
     std::uint32_t capacity_ = 0;
-    Buffer<std::uint32_t> item_offsets_;
-    Buffer<std::uint32_t> summary_;
+    std::uint32_t photons_ = 0;          ///< as counted
+    Buffer<std::uint32_t> item_offsets_; ///< where each item's photons begin among all, and how many there are in all
+    Buffer<std::uint32_t> summary_;      ///< as Summary
     Buffer<std::uint32_t> histogram_;
-    Buffer<std::uint32_t> totals_; ///< of its digits
+    Buffer<std::uint32_t> row_sums_; ///< of what is scanned
     Buffer<std::uint32_t> bucket_begin_;
     Buffer<cl_uint2> pairs_;
     Buffer<cl_uint2> other_pairs_;
-    ::cl::Kernel offsets_;
+    ::cl::Kernel counts_;
+    ::cl::Kernel scan_rows_;
+    ::cl::Kernel scan_columns_;
     ::cl::Kernel keys_;
     ::cl::Kernel count_;
-    ::cl::Kernel digit_totals_;
-    ::cl::Kernel scan_;
     ::cl::Kernel scatter_;
     ::cl::Kernel ranges_;
 };

@@ -278,8 +278,7 @@ void Renderer::trace_photons(const PassSeeds& seeds) {
         photon_pass_.setArg(argument++, item_rays_.cl());
         photon_pass_.setArg(argument++, non_finite_.cl());
         enqueue(Step::PhotonPass, photon_pass_, photon_items_, device_.tuning.item_group);
-        sorter_.count(item_counts_, enqueue_grid());
-        const PhotonSorter::Summary summary = sorter_.summary(device_);
+        const PhotonSorter::Summary summary = sorter_.count(device_, item_counts_, enqueue_grid());
         photon_count_ = summary.photons;
         if (!counted.empty())
             non_finite_.write(device_, counted);

@@ -86,7 +86,7 @@ void gather_at(const Gatherer& gatherer, const Place& place, Measurement& found)
     const double extent = place.size * (std::abs(place.away) + 1.0);
     const auto radius = static_cast<float>(std::max(place.share, double{SMALLEST_RELATIVE_RADIUS}) * extent);
     constexpr std::uint32_t capacity = 64;
-    constexpr std::uint32_t items = 16;
+    const auto items = static_cast<std::uint32_t>(std::max<std::size_t>(16, setting.device.tuning.item_group));
     constexpr std::uint32_t paths = 1000;
     SceneConstants constants{};
     constants.centre_x = static_cast<float>(centre[0]);
@@ -131,7 +131,7 @@ void gather_at(const Gatherer& gatherer, const Place& place, Measurement& found)
     const auto enqueue = [&d](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t size) {
         d.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items), ::cl::NDRange(size));
     };
-    sorter.count(Buffer<std::uint32_t>(d, "selftest counts", std::vector<std::uint32_t>(items, capacity)), enqueue);
+    sorter.count(d, Buffer<std::uint32_t>(d, "selftest counts", std::vector<std::uint32_t>(items, capacity)), enqueue);
     const Buffer<Photon> photon_buffer(d, "selftest photons", photons);
     sorter.sort(Buffer<SceneConstants>(d, "selftest constants", std::vector{constants}), photon_buffer,
                 Buffer<std::uint32_t>(d, "selftest radius", std::vector{std::bit_cast<std::uint32_t>(radius)}),
