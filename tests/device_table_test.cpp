@@ -93,7 +93,7 @@ TEST(DeviceTable, TuningThatNoDeviceCanTakeIsRefused) {
         return "accepted";
     };
     EXPECT_EQ(message("pixels=3"), "--tuning: 'pixels' is none of pixel_group, item_group, paths_per_item, "
-                                   "sort_groups, bvh_width, loop_steps");
+                                   "sort_groups, scan_group, bvh_width, loop_steps");
     EXPECT_EQ(message("pixel_group=0"), "--tuning: pixel_group must be a number from 1 to 4096, not '0'");
     EXPECT_EQ(message("pixel_group=5000"), "--tuning: pixel_group must be a number from 1 to 4096, not '5000'");
     EXPECT_EQ(message("item_group"), "--tuning: item_group must be a number from 1 to 4096, not ''");
