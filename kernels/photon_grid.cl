@@ -50,13 +50,14 @@ kernel void scan_columns(uint columns, const global uint* row_sums, global uint*
 }
 
 // One work-item for each of `items` of photon_pass and for what is left of the rows that are scanned next, to get where its photons
-// begin among all. summary[1], 0 at first: the most photons that one item would have stored.
+// begin among all. summary[1], 0 at first: the most photons that one item would have stored, if that is more than there is
+// room for.
 kernel void photon_counts(const global uint* item_counts, uint items, uint capacity, global uint* item_offsets,
                           global uint* summary) {
     const uint item = (uint)get_global_id(0);
     const uint count = item < items ? item_counts[item] : 0u;
     item_offsets[item] = min(count, capacity);
-    if (count > summary[1])
+    if (count > capacity)
         atomic_max(summary + 1, count);
 }
 

@@ -18,7 +18,13 @@ DeviceInfo named(int index, const std::string& name) {
 
 /// What a check makes of a driver that does as the shell commands say.
 DeviceCheck check_shell(const std::string& commands, double seconds = 60.0) {
-    return check_in_child(named(0, "shell"), {"/bin/sh", "-c", commands}, seconds);
+    return check_in_child(named(0, "shell"), {"/bin/sh", "-c", commands}, {"PATH=/usr/bin:/bin", "COLOUR=red"},
+                          seconds);
+}
+
+TEST(DeviceCheck, ChildrenHaveTheEnvironmentThatTheyAreGiven) {
+    EXPECT_EQ(check_shell("test $COLOUR = red").failure, "");
+    EXPECT_NE(check_shell("test $COLOUR = blue").failure, "");
 }
 
 TEST(DeviceCheck, TakesReportsAndLeavesOtherLinesAlone) {

@@ -246,16 +246,13 @@ void check(const CoatedSurface& surface) {
         for (std::size_t c = 0; c < 3; ++c)
             table[(1 + c) * padded_wavelengths + w] = 0.1F + 0.13F * static_cast<float>((w + 2 * c) % 5);
     }
-    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t /*group*/) {
-        device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items));
-    };
     PhotonSorter sorter(device, gather_macros(), {}, 6);
     sorter.allocate(device, items, capacity);
-    sorter.count(upload(sheet.item_counts), enqueue);
+    sorter.count(device, upload(sheet.item_counts), enqueue_in_groups);
     const Buffer<SceneConstants> constants = upload(std::vector{SceneConstants{}});
     const Buffer<Photon> photons = upload(sheet.photons);
     const Buffer<std::uint32_t> largest = upload(std::vector{std::bit_cast<std::uint32_t>(radius)});
-    sorter.sort(constants, photons, largest, enqueue);
+    sorter.sort(constants, photons, largest, enqueue_in_groups);
     std::vector<SceneFilmLayer> layers = layers_of(surface);
     layers.emplace_back();
     const Buffer<cl_float4> gathered = make_buffer<cl_float4>(visible_points);

@@ -229,16 +229,13 @@ void check(const Build& build) {
     SCOPED_TRACE(build.name);
     const Device& device = test_device();
     const Data data = make_data(build);
-    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t /*group*/) {
-        device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items));
-    };
     PhotonSorter sorter(device, build.macros(), {}, build.radix_bits);
     sorter.allocate(device, items, capacity);
-    sorter.count(upload(data.item_counts), enqueue);
+    sorter.count(device, upload(data.item_counts), enqueue_in_groups);
     const Buffer<SceneConstants> constants = upload(std::vector{data.constants});
     const Buffer<Photon> photons = upload(data.photons);
     const Buffer<std::uint32_t> radius = upload(std::vector{std::bit_cast<std::uint32_t>(data.largest_radius)});
-    sorter.sort(constants, photons, radius, enqueue);
+    sorter.sort(constants, photons, radius, enqueue_in_groups);
     const Buffer<cl_float4> gathered = make_buffer<cl_float4>(visible_points);
     run(build_program(device, "gather.cl", build.macros(), {}), "gather", visible_points, constants,
         upload(data.pass_table), upload(data.points), upload(data.eye_spectra), photons, upload(data.photon_spectra),

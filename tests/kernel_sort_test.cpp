@@ -57,13 +57,9 @@ void check(const Case& c) {
         photon.y = static_cast<float>(random(-c.extent, c.extent));
         photon.z = static_cast<float>(random(-c.extent, c.extent));
     }
-    const auto enqueue = [&device](const ::cl::Kernel& kernel, std::size_t work_items, std::size_t group) {
-        device.queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(work_items),
-                                          work_items % group == 0 ? ::cl::NDRange(group) : ::cl::NullRange);
-    };
     PhotonSorter sorter(device, {{"RADIX_BITS", std::to_string(c.radix_bits)}}, {}, c.radix_bits);
     sorter.allocate(device, items, c.capacity);
-    const PhotonSorter::Summary summary = sorter.count(device, upload(c.item_counts), enqueue);
+    const PhotonSorter::Summary summary = sorter.count(device, upload(c.item_counts), enqueue_in_groups);
 
     std::vector<std::uint32_t> stored; // the photons' indices, in order
     std::vector<std::uint32_t> offsets{0};
@@ -77,13 +73,13 @@ void check(const Case& c) {
     }
     const auto count = static_cast<std::uint32_t>(stored.size());
     ASSERT_EQ(summary.photons, count);
-    EXPECT_EQ(summary.most_per_item, most);
+    EXPECT_EQ(summary.most_per_item, most > c.capacity ? most : 0U);
     EXPECT_EQ(sorter.item_offsets().read(device, offsets.size()), offsets);
 
     const Buffer<SceneConstants> constants = upload(std::vector{SceneConstants{}});
     const Buffer<Photon> photon_buffer = upload(photons);
     const Buffer<std::uint32_t> radius = upload(std::vector{std::bit_cast<std::uint32_t>(c.largest_radius)});
-    sorter.sort(constants, photon_buffer, radius, enqueue);
+    sorter.sort(constants, photon_buffer, radius, enqueue_in_groups);
     const std::vector<cl_uint2> pairs = sorter.pairs().read(device, count);
     const std::vector<std::uint32_t> begin = sorter.bucket_begin().read(device);
 

@@ -84,7 +84,7 @@ TEST(Team, SharingDoesNotShow) {
 TEST(Team, OthersDoWhatAFailedDeviceLost) {
     const Bits expected = alone(passes);
     // Some launches are those of the pilot pass, which has its device left out from the start; others come in passes.
-    for (const char* fault : {"build:2", "allocate:9", "launch:3", "launch:60", "lost:61", "launch:75", "lost:90"}) {
+    for (const char* fault : {"build:2", "allocate:9", "launch:3", "launch:25", "lost:26", "launch:40", "lost:45"}) {
         const RenderOutcome outcome = render({"", fault});
         EXPECT_TRUE(same(bits(outcome), expected)) << fault;
         EXPECT_EQ(outcome.statistics.passes, passes) << fault;

@@ -28,7 +28,8 @@ class PhotonSorter {
 
     struct Summary {
         std::uint32_t photons;       ///< in all
-        std::uint32_t most_per_item; ///< that one item would have stored; more than the capacity: some are missing
+        std::uint32_t most_per_item; ///< that one item would have stored, if that is more than the capacity and some
+                                     ///< are missing; else 0
     };
     /// After photon_pass: counts its photons (item_counts) and waits for the device.
     Summary count(const Device& device, const Buffer<std::uint32_t>& item_counts, const Enqueue& enqueue);

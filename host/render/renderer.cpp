@@ -282,7 +282,7 @@ void Renderer::trace_photons(const PassSeeds& seeds) {
         photon_count_ = summary.photons;
         if (!counted.empty())
             non_finite_.write(device_, counted);
-        if (summary.most_per_item <= capacity_per_item_)
+        if (summary.most_per_item == 0)
             return;
         allocate_photons(summary.most_per_item + summary.most_per_item / 4);
         counted = non_finite_.read(device_);

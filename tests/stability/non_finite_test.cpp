@@ -267,16 +267,14 @@ TEST_P(NonFinite, GatherLosesOnlyThePointsThatMeetThem) {
     photons[3 * 4].flux_y = std::numeric_limits<float>::quiet_NaN();
     PhotonSorter sorter(device, {{"RADIX_BITS", "6"}}, {}, 6);
     sorter.allocate(device, pixels, photons_each);
-    const auto enqueue = [&device](const ::cl::Kernel& k, std::size_t items, std::size_t /*group*/) {
-        device.queue.enqueueNDRangeKernel(k, ::cl::NullRange, ::cl::NDRange(items));
-    };
+    using kernel_test::enqueue_in_groups;
     using kernel_test::make_buffer;
     using kernel_test::upload;
-    sorter.count(upload(std::vector<std::uint32_t>(pixels, photons_each)), enqueue);
+    sorter.count(device, upload(std::vector<std::uint32_t>(pixels, photons_each)), enqueue_in_groups);
     const Buffer<SceneConstants> constants = upload(std::vector{SceneConstants{}});
     const Buffer<Photon> photon_buffer = upload(photons);
     const Buffer<std::uint32_t> radius = upload(std::vector{std::bit_cast<std::uint32_t>(0.1F)});
-    sorter.sort(constants, photon_buffer, radius, enqueue);
+    sorter.sort(constants, photon_buffer, radius, enqueue_in_groups);
     const auto gathered = [&](const std::string& source, std::uint32_t& counted) {
         const ::cl::Program program =
             build_program_from_text(device, "gather.cl", source, {{"RADIX_BITS", "6"}}, {options_.fast_math, {}});
