@@ -18,7 +18,7 @@ struct Simulation {
 
 /// Workers whose passes take so many seconds render so many passes; worker `failing` fails after `good` of them, and
 /// has lost the last two then.
-Simulation simulate(std::uint64_t passes, const std::vector<double>& pass_seconds, std::size_t failing = 99,
+Simulation simulate(const PassRanges& passes, const std::vector<double>& pass_seconds, std::size_t failing = 99,
                     std::uint64_t good = 0) {
     PassQueue queue(passes, pass_seconds.size());
     Simulation result{std::vector<std::uint64_t>(pass_seconds.size()), {}, 0.0};
@@ -65,13 +65,22 @@ Simulation simulate(std::uint64_t passes, const std::vector<double>& pass_second
 }
 
 TEST(PassQueue, OneWorkerTakesAllInOrder) {
-    const Simulation one = simulate(5, {0.1});
+    const Simulation one = simulate({0, 5}, {0.1});
     EXPECT_EQ(one.order, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
-    EXPECT_EQ(simulate(0, {0.1}).order.size(), 0U);
+    EXPECT_EQ(simulate({0, 0}, {0.1}).order.size(), 0U);
+}
+
+TEST(PassQueue, OfSeveralRangesPassesComeInOrder) {
+    const PassRanges ranges = PassRanges::parse("40:42,3:5,4294967293:4294967295");
+    const Simulation one = simulate(ranges, {0.1});
+    EXPECT_EQ(one.order, (std::vector<std::uint32_t>{3, 4, 40, 41, 4294967293U, 4294967294U}));
+    const Simulation two = simulate(ranges, {0.1, 0.1});
+    EXPECT_EQ(two.order, one.order);
+    EXPECT_NEAR(two.end, 0.3, 1e-9);
 }
 
 TEST(PassQueue, SharesFollowSpeed) {
-    const Simulation three = simulate(700, {0.1, 0.2, 0.4});
+    const Simulation three = simulate({0, 700}, {0.1, 0.2, 0.4});
     EXPECT_NEAR(static_cast<double>(three.passes[0]), 400.0, 2.0);
     EXPECT_NEAR(static_cast<double>(three.passes[1]), 200.0, 2.0);
     EXPECT_NEAR(static_cast<double>(three.passes[2]), 100.0, 2.0);
@@ -83,28 +92,28 @@ TEST(PassQueue, SharesFollowSpeed) {
 
 /// A worker a hundred times as slow as another must not begin a pass that the other would have done long before.
 TEST(PassQueue, SlowWorkersDoNotDelayTheEnd) {
-    const Simulation two = simulate(150, {0.1, 10.0});
+    const Simulation two = simulate({0, 150}, {0.1, 10.0});
     EXPECT_EQ(two.passes[1], 1U);
     EXPECT_NEAR(two.end, 14.9, 0.01); // with a second slow pass: 20
     // As quick as it can be: the slow one's first pass takes as long as all the others.
-    EXPECT_NEAR(simulate(20, {0.1, 10.0}).end, 10.0, 1e-9);
+    EXPECT_NEAR(simulate({0, 20}, {0.1, 10.0}).end, 10.0, 1e-9);
 }
 
 TEST(PassQueue, EquallyFastWorkersDoNotWaitForEachOther) {
-    const Simulation four = simulate(9, {1.0, 1.0, 1.0, 1.0});
+    const Simulation four = simulate({0, 9}, {1.0, 1.0, 1.0, 1.0});
     EXPECT_EQ(four.order.size(), 9U);
     EXPECT_NEAR(four.end, 3.0, 1e-9);
 }
 
 TEST(PassQueue, WhatAFailedWorkerLostIsDoneByTheOthers) {
-    const Simulation two = simulate(100, {0.1, 0.1}, 1, 10);
+    const Simulation two = simulate({0, 100}, {0.1, 0.1}, 1, 10);
     std::multiset<std::uint32_t> taken(two.order.begin(), two.order.end());
     EXPECT_EQ(taken.size(), 102U); // two of them twice
     EXPECT_EQ(std::set<std::uint32_t>(taken.begin(), taken.end()).size(), 100U);
     EXPECT_EQ(two.passes[0] + two.passes[1], 100U);
     EXPECT_EQ(two.passes[1], 9U);
     // No one is left: passes stay undone.
-    PassQueue queue(3, 1);
+    PassQueue queue(PassRanges(0, 3), 1);
     EXPECT_EQ(queue.take(0, 0.0), 0U);
     queue.failed(0, {0});
     EXPECT_FALSE(queue.empty());

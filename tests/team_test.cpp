@@ -103,6 +103,42 @@ TEST(Team, OfTheOnlyDeviceThePassesDoneAreKept) {
     }
 }
 
+/// Passes rendered by several teams, each resuming what those before it have done, on devices that fail as well: the
+/// image of one, and what was resumed is never lost.
+TEST(Team, GoesOnFromSums) {
+    const Bits expected = alone(passes);
+    const Scene scene = load_scene(scene_path);
+    RenderSums sums;
+    std::vector<float> radii;
+    for (const auto& [first, count, fault] : std::vector<std::tuple<std::uint32_t, std::uint64_t, const char*>>{
+             {4, 3, ""}, {9, 9, "lost:61"}, {0, 16, ""}}) {
+        Team team(scene, options(), devices({fault, ""}));
+        if (!radii.empty())
+            team.resume(sums, radii);
+        else
+            radii = team.initial_radii();
+        std::uint64_t asked = 0, given = 0;
+        team.render({count, {}, first}, [&](std::uint64_t) {
+            if (asked++ == 0)
+                team.request_sums();
+            if (const auto now = team.requested_sums()) {
+                ++given;
+                EXPECT_TRUE(holds_passes(now->film, now->passes.count()));
+                EXPECT_EQ(now->passes.common(sums.passes), sums.passes);
+            }
+            return true;
+        });
+        EXPECT_GT(given, 0U);
+        const PassRanges before = sums.passes;
+        const RenderOutcome outcome = team.outcome();
+        sums = outcome.sums;
+        EXPECT_TRUE(passes_to_do({count, {}, first}, sums.passes).empty()) << sums.passes.text();
+        EXPECT_EQ(outcome.statistics.passes, sums.passes.count());
+        EXPECT_EQ(outcome.shares[0].passes + outcome.shares[1].passes + before.count(), sums.passes.count());
+    }
+    EXPECT_EQ(sums.passes.text(), "0:18");
+}
+
 TEST(Team, WithoutAnyDeviceItSaysWhy) {
     expect_words(error_of([] {
                      Team(load_scene(scene_path), options(), devices({"allocate:1", "build:1"}));

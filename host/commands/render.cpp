@@ -28,6 +28,7 @@ struct RenderCommand {
     std::vector<std::string> outfiles;
     std::optional<std::uint64_t> passes;
     std::optional<double> seconds;
+    std::string pass_range;
     std::string space = "srgb";
     std::string tone_mapping = "photographic";
     double exposure = 0.0;
@@ -51,6 +52,12 @@ RenderBudget limits(const RenderCommand& command, const Scene& scene) {
         check_seconds(*command.seconds, "--time");
     if (!std::isfinite(command.exposure))
         fail("--exposure must be a finite number of stops");
+    if (!command.pass_range.empty()) {
+        const PassRanges range = PassRanges::parse(command.pass_range);
+        if (range.ranges().size() != 1)
+            fail("--pass-range {} is not one range", command.pass_range);
+        return {range.count(), command.seconds, range.ranges().front().begin};
+    }
     if (!command.passes && !command.seconds)
         return {scene.settings.passes ? static_cast<std::uint64_t>(*scene.settings.passes) : default_passes, {}};
     return {command.passes, command.seconds};
@@ -79,7 +86,7 @@ bool report_failures(const RenderOutcome& outcome, const RenderBudget& limits) {
                    failed == outcome.shares.size() ? "error" : "warning", share.device.name, share.passes,
                    share.failure);
     }
-    return failed < outcome.shares.size() || (limits.passes && outcome.statistics.passes >= *limits.passes);
+    return failed < outcome.shares.size() || passes_to_do(limits, outcome.sums.passes).empty();
 }
 
 /// "A" or "A (41 passes), B (23 passes)".
@@ -181,8 +188,12 @@ void add_render_command(CLI::App& app) {
         ->type_name("FILE.exr|FILE.png")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]")
-        ->check(CLI::PositiveNumber);
+    auto* passes = sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]")
+                       ->check(CLI::PositiveNumber);
+    sub->add_option("--pass-range", command->pass_range,
+                    "Render only passes A to B - 1 of an image, see `tristim merge`")
+        ->type_name("A:B")
+        ->excludes(passes);
     sub->add_option("--time", command->seconds, "Seconds to render; with --passes, the first reached ends the render");
     sub->add_option("--space", command->space, "Channels of EXR files: linear sRGB (R, G, B) or xyz (X, Y, Z)")
         ->check(CLI::IsMember({"srgb", "xyz"}))

@@ -38,8 +38,9 @@ struct RenderOptions {
 
 /// How long a render is to be: the limit that is reached first ends it.
 struct RenderBudget {
-    std::optional<std::uint64_t> passes;
+    std::optional<std::uint64_t> passes; ///< from first_pass on
     std::optional<double> seconds;
+    std::uint32_t first_pass = 0;
 };
 
 inline constexpr int default_photons_per_pass = 65536;

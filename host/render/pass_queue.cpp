@@ -5,6 +5,13 @@
 
 namespace tristim {
 
+std::uint64_t PassQueue::left() const {
+    std::uint64_t count = returned_.size();
+    for (std::size_t i = current_; i < ranges_.size(); ++i)
+        count += ranges_[i].end - ranges_[i].begin;
+    return count;
+}
+
 /// How many passes the other workers will have done before `until`, beyond those under way.
 double PassQueue::others_can_do(std::size_t worker, double now, double until) const {
     double count = 0.0;
@@ -25,8 +32,13 @@ std::optional<std::uint32_t> PassQueue::take(std::size_t worker, double now) {
     if (taker.passes > 0 && others_can_do(worker, now, now + taker.pass_seconds()) >= static_cast<double>(left()))
         return {};
     taker.began = now;
-    if (returned_.empty())
-        return static_cast<std::uint32_t>(next_++);
+    if (returned_.empty()) {
+        PassRanges::Range& range = ranges_[current_];
+        const std::uint32_t pass = range.begin++;
+        if (range.begin == range.end)
+            ++current_;
+        return pass;
+    }
     const std::uint32_t pass = returned_.back();
     returned_.pop_back();
     return pass;

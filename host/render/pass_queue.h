@@ -1,17 +1,19 @@
 #pragma once
 
+#include "render/pass_ranges.h"
+
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace tristim {
 
-/// Hands out the numbers of passes, ascending from 0, to workers of different speed. Times are in seconds from any
+/// Hands out the numbers of passes, ascending, to workers of different speed. Times are in seconds from any
 /// start. Not safe for threads by itself.
 class PassQueue {
   public:
-    /// Up to so many passes.
-    PassQueue(std::uint64_t passes, std::size_t workers) : passes_(passes), workers_(workers) {}
+    /// These passes.
+    PassQueue(const PassRanges& passes, std::size_t workers) : ranges_(passes.ranges()), workers_(workers) {}
 
     /// The pass that an idle worker is to begin now; none if no pass is left or the others, at the speed that they have
     /// shown, will have done all that are left before it could do one.
@@ -36,11 +38,11 @@ class PassQueue {
         double pass_seconds() const { return seconds / static_cast<double>(passes); }
     };
 
-    std::uint64_t left() const { return passes_ - next_ + returned_.size(); }
+    std::uint64_t left() const;
     double others_can_do(std::size_t worker, double now, double until) const;
 
-    std::uint64_t passes_;
-    std::uint64_t next_ = 0;
+    std::vector<PassRanges::Range> ranges_;
+    std::size_t current_ = 0; ///< of the ranges; `begin` of it is the next pass
     std::vector<std::uint32_t> returned_;
     std::vector<Worker> workers_;
 };

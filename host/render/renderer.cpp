@@ -374,6 +374,7 @@ RenderSums Renderer::sums() const {
     }
     for (const std::uint64_t rays : item_rays_.read(device_))
         sums.rays.photon += rays;
+    sums.photons_stored = statistics_.photons_stored;
     sums.non_finite = non_finite_counts(non_finite_.read(device_), sums.film);
     return sums;
 }

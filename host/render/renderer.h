@@ -50,7 +50,7 @@ class Renderer {
     /// Its rejected samples are non_finite().total().
     FilmImage film() const;
 
-    /// All that the passes have added up to.
+    /// All that the passes have added up to; which these are is not known here.
     RenderSums sums() const;
 
     /// The running sums, which another renderer of the same scene, options and device goes on from.

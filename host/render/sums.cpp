@@ -11,7 +11,9 @@ void add(RenderSums& sums, const RenderSums& more) {
         sums = more;
         return;
     }
+    sums.passes.add(more.passes);
     add_film(sums.film, more.film);
+    sums.photons_stored += more.photons_stored;
     sums.rays.camera += more.rays.camera;
     sums.rays.shadow += more.rays.shadow;
     sums.rays.photon += more.rays.photon;
@@ -21,8 +23,8 @@ void add(RenderSums& sums, const RenderSums& more) {
     sums.non_finite.film += more.non_finite.film;
 }
 
-bool holds_passes(const RenderSums& sums, std::uint64_t passes) {
-    return std::all_of(sums.film.begin(), sums.film.end(), [passes](const FilmPixel& pixel) {
+bool holds_passes(const std::vector<FilmPixel>& film, std::uint64_t passes) {
+    return std::all_of(film.begin(), film.end(), [passes](const FilmPixel& pixel) {
         return std::uint64_t{pixel.samples} + pixel.rejected == passes;
     });
 }

@@ -2,6 +2,7 @@
 
 #include "render/film.h"
 #include "render/options.h"
+#include "render/pass_ranges.h"
 #include "render/statistics.h"
 
 #include <vector>
@@ -11,15 +12,18 @@ namespace tristim {
 /// What passes add up to, on whatever devices.
 struct RenderSums {
     std::vector<FilmPixel> film;
+    PassRanges passes; ///< that the film holds
     RayTotals rays;
     NonFiniteCounts non_finite;
+    std::uint64_t photons_stored = 0;
 };
 
-/// Adds the passes of another render of the same pixels, see add_film; sums without a film are none.
+/// Adds the passes of another render of the same pixels, see add_film; sums without a film are none. Throws Error if
+/// some are in both.
 void add(RenderSums& sums, const RenderSums& more);
 
 /// Whether every pixel holds as many passes; not so if a device failed while it added one.
-bool holds_passes(const RenderSums& sums, std::uint64_t passes);
+bool holds_passes(const std::vector<FilmPixel>& film, std::uint64_t passes);
 
 /// The image.
 FilmImage developed(const RenderSums& sums, const RenderOptions& options);

@@ -26,7 +26,18 @@ std::string reason() {
     }
 }
 
+/// Whether they are all passes up to one.
+bool begin_the_image(const PassRanges& passes) {
+    return passes.empty() || passes == PassRanges(0, passes.ranges().front().end);
+}
+
 } // namespace
+
+PassRanges passes_to_do(const RenderBudget& limits, const PassRanges& done) {
+    const std::uint64_t left = pilot_pass - limits.first_pass;
+    const auto count = static_cast<std::uint32_t>(std::min(limits.passes.value_or(left), left));
+    return done.missing(limits.first_pass, limits.first_pass + count);
+}
 
 Team::Team(const Scene& scene, const RenderOptions& options, const std::vector<Device>& devices,
            std::shared_ptr<const DeviceScene> made)
@@ -51,23 +62,48 @@ Team::Team(const Scene& scene, const RenderOptions& options, const std::vector<D
     for (std::thread& thread : threads)
         thread.join();
 
-    const Member* first = nullptr;
-    for (Member& member : members_) {
-        if (!member.renderer)
-            continue;
-        if (first == nullptr)
-            first = &member;
-        else
-            member.renderer->set_initial_radii(first->renderer->initial_radii());
-    }
-    if (first == nullptr)
+    const auto built =
+        std::find_if(members_.begin(), members_.end(), [](const Member& member) { return member.renderer != nullptr; });
+    if (built == members_.end())
         fail("{}", members_.front().failure);
+    first_ = static_cast<std::size_t>(built - members_.begin());
+    const std::vector<float> radii = initial_radii();
+    for (auto member = built + 1; member < members_.end(); ++member) {
+        if (member->renderer)
+            member->renderer->set_initial_radii(radii);
+    }
+}
+
+std::vector<float> Team::initial_radii() const {
+    return members_[first_].renderer->initial_radii();
+}
+
+void Team::resume(const RenderSums& sums, const std::vector<float>& radii) {
+    for (Member& member : members_) {
+        if (member.renderer)
+            member.renderer->set_initial_radii(radii);
+    }
+    // On a device alone, passes go on being added as if there had been no pause.
+    Member& member = members_[first_];
+    member.renderer->restore(sums.film, 0, 0.0);
+    member.saved = std::make_shared<RenderSums>(sums);
+    member.earlier = {{}, sums.passes, sums.rays, sums.non_finite, sums.photons_stored};
+    member.earlier.rays.camera = member.earlier.rays.shadow = member.earlier.non_finite.film =
+        0; // the film counts them
 }
 
 void Team::render(const RenderBudget& limits, const std::function<bool(std::uint64_t)>& go_on) {
     const Stopwatch stopwatch;
-    queue_ = std::make_unique<PassQueue>(std::min<std::uint64_t>(limits.passes.value_or(pilot_pass), pilot_pass),
-                                         members_.size());
+    const PassRanges earlier = members_[first_].earlier.passes;
+    const PassRanges passes = passes_to_do(limits, earlier);
+    if (options_.statistics_radius) {
+        PassRanges all = earlier;
+        all.add(passes);
+        if (!begin_the_image(earlier) || !begin_the_image(all))
+            fail("--radius statistics needs each pass after those before it: passes {} cannot follow {}", passes.text(),
+                 earlier.empty() ? "none" : earlier.text());
+    }
+    queue_ = std::make_unique<PassQueue>(passes, members_.size());
     std::size_t working = 0;
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -110,26 +146,31 @@ void Team::work(std::size_t index, const RenderBudget& limits) {
         if (stopping_ || late || (queue_->empty() && !queue_->busy()))
             return;
         const std::optional<std::uint32_t> pass = queue_->take(index, stopwatch.seconds());
-        if (!pass) {
+        if (!pass && !member.requested) {
             changed_.wait_for(lock, std::chrono::milliseconds(50));
             continue;
         }
         lock.unlock();
-        member.unsaved.push_back(*pass);
         try {
-            render_pass(member, stopwatch.seconds());
+            if (pass) {
+                member.unsaved.push_back(*pass);
+                member.renderer->render_pass(*pass);
+            }
+            save_if_due(member, stopwatch.seconds());
         } catch (const std::exception&) {
             member.failure = reason();
             const std::vector<std::uint32_t> lost = rescue(member);
             lock.lock();
             count(member, member.saved_passes);
             queue_->failed(index, lost);
+            member.requested = false;
             changed_.notify_all();
             return;
         }
         lock.lock();
         count(member, member.saved_passes + member.unsaved.size());
-        queue_->done(index, stopwatch.seconds());
+        if (pass)
+            queue_->done(index, stopwatch.seconds());
         changed_.notify_all();
     }
 }
@@ -139,40 +180,84 @@ void Team::count(Member& member, std::uint64_t passes) {
     member.counted = passes;
 }
 
-void Team::render_pass(Member& member, double now) {
-    member.renderer->render_pass(member.unsaved.back());
-    if (now - member.saved_at < seconds_per_saving_second * member.saving_seconds)
+void Team::request_sums() {
+    const std::lock_guard lock(mutex_);
+    for (Member& member : members_)
+        member.requested = member.renderer && member.failure.empty();
+}
+
+std::optional<RenderSums> Team::requested_sums() {
+    std::vector<std::shared_ptr<const RenderSums>> saved;
+    {
+        const std::lock_guard lock(mutex_);
+        for (const Member& member : members_) {
+            if (member.requested)
+                return {};
+            saved.push_back(member.saved);
+        }
+    }
+    RenderSums sums;
+    for (const auto& part : saved)
+        add(sums, *part);
+    return sums;
+}
+
+/// All on the device, that of earlier renders included, of passes that the device does not know.
+RenderSums Team::Member::sums() const {
+    RenderSums sums = renderer->sums();
+    sums.rays.photon += earlier.rays.photon;
+    sums.non_finite.eye += earlier.non_finite.eye;
+    sums.non_finite.photon += earlier.non_finite.photon;
+    sums.non_finite.gather += earlier.non_finite.gather;
+    sums.photons_stored += earlier.photons_stored;
+    return sums;
+}
+
+void Team::save_if_due(Member& member, double now) {
+    bool requested = false;
+    {
+        const std::lock_guard lock(mutex_);
+        requested = member.requested;
+    }
+    if (!requested && now - member.saved_at < seconds_per_saving_second * member.saving_seconds)
         return;
     const Stopwatch saving;
-    member.save();
+    save(member);
     member.saving_seconds = saving.seconds();
     member.saved_at = now;
 }
 
-void Team::Member::save() {
-    saved = renderer->sums();
-    saved_passes += unsaved.size();
-    unsaved.clear();
+void Team::save(Member& member) {
+    auto sums = std::make_shared<RenderSums>(member.sums());
+    sums->passes = member.saved->passes;
+    sums->passes.add(PassRanges::of(member.unsaved));
+    const std::lock_guard lock(mutex_);
+    member.saved = std::move(sums);
+    member.saved_passes += member.unsaved.size();
+    member.unsaved.clear();
+    member.requested = false;
 }
 
 /// After a failure in the last of the unsaved passes: saves what the device still holds, if that is whole. The passes
 /// that are lost.
 std::vector<std::uint32_t> Team::rescue(Member& member) {
-    std::vector<std::uint32_t> lost;
-    lost.swap(member.unsaved);
+    std::vector<std::uint32_t> lost = member.unsaved;
+    member.unsaved.clear();
     try {
-        RenderSums sums = member.renderer->sums();
+        const std::vector<FilmPixel> film = member.renderer->film_pixels();
         for (const std::size_t missing : {std::size_t{0}, std::size_t{1}}) {
-            const std::uint64_t passes = member.saved_passes + lost.size() - missing;
-            if (lost.size() < missing || !holds_passes(sums, passes))
+            const std::uint64_t passes = member.saved->passes.count() + lost.size() - missing;
+            if (lost.size() < missing || !holds_passes(film, passes))
                 continue;
-            member.saved = std::move(sums);
-            member.saved_passes = passes;
-            lost.erase(lost.begin(), lost.end() - static_cast<std::ptrdiff_t>(missing));
+            const auto rest = lost.end() - static_cast<std::ptrdiff_t>(missing);
+            member.unsaved.assign(lost.begin(), rest);
+            save(member);
+            lost.erase(lost.begin(), rest);
             break;
         }
     } catch (const std::exception&) {
         // The device cannot be read any more: what was saved before stays.
+        member.unsaved.clear();
     }
     return lost;
 }
@@ -192,7 +277,7 @@ RenderOutcome Team::outcome() {
         if (member.renderer) {
             if (member.failure.empty()) {
                 try {
-                    member.save();
+                    save(member);
                 } catch (const std::exception&) {
                     share.failure = reason();
                 }
@@ -200,7 +285,7 @@ RenderOutcome Team::outcome() {
             const RenderStatistics& statistics = member.renderer->statistics();
             share.passes = member.saved_passes;
             share.seconds = statistics.render_seconds;
-            add(outcome.sums, member.saved);
+            add(outcome.sums, *member.saved);
             if (first)
                 outcome.statistics = statistics;
             else
@@ -209,9 +294,8 @@ RenderOutcome Team::outcome() {
         }
         outcome.shares.push_back(share);
     }
-    outcome.statistics.passes = 0;
-    for (const DeviceShare& share : outcome.shares)
-        outcome.statistics.passes += share.passes;
+    outcome.statistics.passes = outcome.sums.passes.count();
+    outcome.statistics.photons_stored = outcome.sums.photons_stored;
     outcome.statistics.photons_emitted =
         outcome.statistics.passes * static_cast<std::uint64_t>(options_.photons_per_pass);
     outcome.statistics.render_seconds = render_seconds_;

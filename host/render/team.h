@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace tristim {
 /// What one device did for a render.
 struct DeviceShare {
     DeviceInfo device;
-    std::uint64_t passes = 0; ///< in the image
+    std::uint64_t passes = 0; ///< of its own in the image
     double seconds = 0.0;     ///< rendering
     std::string failure;      ///< why it stopped early, or empty
 };
@@ -23,9 +24,13 @@ struct DeviceShare {
 /// What a render has come to.
 struct RenderOutcome {
     RenderSums sums;
-    RenderStatistics statistics; ///< of all devices; buffers are those of the first
+    RenderStatistics statistics; ///< of all devices, passes and photons of earlier renders among them; buffers are
+                                 ///< those of the first
     std::vector<DeviceShare> shares;
 };
+
+/// The passes that limits ask for (of time aside), without those that are done.
+PassRanges passes_to_do(const RenderBudget& limits, const PassRanges& done);
 
 /// Renders one scene on several devices. Each takes the next pass when it has done one, so faster ones do more; the
 /// image is the sum of the passes, whoever rendered which. If a device fails, what it had lately is rendered anew by
@@ -39,9 +44,21 @@ class Team {
     Team(const Scene& scene, const RenderOptions& options, const std::vector<Device>& devices,
          std::shared_ptr<const DeviceScene> made = nullptr);
 
+    /// Goes on from what other renders of this scene with these options have come to. Call it before render, which
+    /// then leaves out the passes that these sums hold. Radii are as initial_radii().
+    void resume(const RenderSums& sums, const std::vector<float>& radii);
+
+    /// The search radius of each pixel in pass 0, scene units. Not while it renders.
+    std::vector<float> initial_radii() const;
+
     /// Renders passes until a limit is reached, no device is left or `go_on` says no; that is called now and then with
-    /// the passes done, from this thread. Call it once.
+    /// the passes done by this call, from this thread. Call it once. Throws Error, before it begins, if radii follow
+    /// each pixel's statistics and the passes are not those after the ones that were resumed.
     void render(const RenderBudget& limits, const std::function<bool(std::uint64_t passes)>& go_on);
+
+    /// For `go_on`: has every device save its sums when it has done its pass, and then gives what all saved.
+    void request_sums();
+    std::optional<RenderSums> requested_sums();
 
     /// Also after devices have failed.
     RenderOutcome outcome();
@@ -54,28 +71,32 @@ class Team {
         DeviceInfo device;
         std::unique_ptr<Renderer> renderer; ///< none if it could not be built
         std::string failure;
-        RenderSums saved; ///< of saved_passes passes
-        std::uint64_t saved_passes = 0;
+        RenderSums earlier; ///< of renders before that are on this device: all but the film itself
+        std::shared_ptr<const RenderSums> saved = std::make_shared<RenderSums>(); ///< replaced as a whole, see mutex_
+        std::uint64_t saved_passes = 0;                                           ///< of its own in it
         std::vector<std::uint32_t> unsaved; ///< the passes after them, the one under way last
         double saved_at = 0.0;              ///< seconds on the stopwatch
         double saving_seconds = 0.0;
         std::uint64_t counted = 0; ///< of its passes, in done_
+        bool requested = false;    ///< request_sums waits for it
 
-        void save();
+        RenderSums sums() const;
     };
 
     void work(std::size_t index, const RenderBudget& limits);
-    void render_pass(Member& member, double now);
-    static std::vector<std::uint32_t> rescue(Member& member);
+    void save(Member& member);
+    void save_if_due(Member& member, double now);
+    std::vector<std::uint32_t> rescue(Member& member);
     void count(Member& member, std::uint64_t passes);
 
     RenderOptions options_;
     std::vector<Member> members_;
+    std::size_t first_ = 0; ///< of the members, that could be built
     std::unique_ptr<PassQueue> queue_;
     double render_seconds_ = 0.0;
     std::uint64_t done_ = 0;
     bool stopping_ = false;
-    std::mutex mutex_; ///< of queue_, done_ and stopping_
+    std::mutex mutex_; ///< of queue_, done_, stopping_ and of the members' saved and requested
     std::condition_variable changed_;
 };
 
