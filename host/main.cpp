@@ -8,6 +8,7 @@
 #include "commands/devices.h"
 #include "commands/effects.h"
 #include "commands/film.h"
+#include "commands/merge.h"
 #include "commands/methods.h"
 #include "commands/reference.h"
 #include "commands/render.h"
@@ -51,6 +52,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.get_formatter()->column_width(36);
     tristim::add_render_command(app);
+    tristim::add_merge_command(app);
     tristim::add_reference_command(app);
     tristim::add_effects_command(app);
     tristim::add_methods_command(app);

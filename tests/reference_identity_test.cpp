@@ -1,5 +1,5 @@
 // What a reference belongs to: any change of the scene that an image could show changes the hash, nothing else does.
-#include "bench/scene_identity.h"
+#include "render/scene_identity.h"
 #include "scene_folder.h"
 
 #include <array>

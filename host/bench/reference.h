@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/results.h"
-#include "bench/scene_identity.h"
+#include "render/scene_identity.h"
 #include "image/image.h"
 #include "render/device_scene.h"
 

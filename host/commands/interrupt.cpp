@@ -11,10 +11,14 @@ volatile std::sig_atomic_t caught = 0;
 
 void catch_interrupts() {
     struct sigaction action {};
-    action.sa_handler = [](int) { caught = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    action.sa_handler = [](int) {
+        caught = 1;
+        std::signal(SIGINT, SIG_DFL);
+        std::signal(SIGTERM, SIG_DFL);
+    };
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() {

@@ -2,8 +2,12 @@
 
 namespace tristim {
 
-/// From now on the first SIGINT or SIGTERM only sets interrupted(); a second one ends the process as usual.
+/// From now on the first SIGINT or SIGTERM only sets interrupted(); a second one ends the process as usual. And a limit
+/// on the size of files makes writing fail instead of ending the process.
 void catch_interrupts();
 bool interrupted();
+
+/// The exit status of a render that was interrupted and has saved all that it had done.
+inline constexpr int exit_interrupted_and_saved = 3;
 
 } // namespace tristim

@@ -7,8 +7,8 @@
 
 namespace tristim {
 
-Progress::Progress(const RenderBudget& limits, int photons_per_pass, bool quiet)
-    : limits_(limits), photons_per_pass_(photons_per_pass), status_(quiet) {}
+Progress::Progress(const RenderBudget& limits, int photons_per_pass, bool quiet, std::uint64_t earlier_passes)
+    : limits_(limits), photons_per_pass_(photons_per_pass), earlier_passes_(earlier_passes), status_(quiet) {}
 
 std::string Progress::line(std::uint64_t passes) const {
     const double seconds = std::max(elapsed(), 1e-9);
@@ -18,9 +18,10 @@ std::string Progress::line(std::uint64_t passes) const {
         remaining = seconds * static_cast<double>(*limits_.passes - passes) / static_cast<double>(passes);
     if (limits_.seconds)
         remaining = std::min(remaining, std::max(*limits_.seconds - seconds, 0.0));
-    const std::string total = limits_.passes ? fmt::format("/{}", *limits_.passes) : "";
-    return fmt::format("pass {}{}  photons {:.2f} M  {:.2f} Mphotons/s  elapsed {}  remaining {}", passes, total,
-                       1e-6 * photons, 1e-6 * photons / seconds, format_duration(seconds),
+    const std::string total = limits_.passes ? fmt::format("/{}", *limits_.passes + earlier_passes_) : "";
+    return fmt::format("pass {}{}  photons {:.2f} M  {:.2f} Mphotons/s  elapsed {}  remaining {}",
+                       passes + earlier_passes_, total, 1e-6 * photons, 1e-6 * photons / seconds,
+                       format_duration(seconds),
                        remaining < std::numeric_limits<double>::infinity() ? format_duration(remaining) : "?");
 }
 

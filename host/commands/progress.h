@@ -11,8 +11,10 @@ namespace tristim {
 /// The status line of a render: pass, photons, photons/s, elapsed, remaining.
 class Progress {
   public:
-    Progress(const RenderBudget& limits, int photons_per_pass, bool quiet);
+    /// Passes are shown with those that earlier renders have done; `limits` has those that are left.
+    Progress(const RenderBudget& limits, int photons_per_pass, bool quiet, std::uint64_t earlier_passes = 0);
 
+    /// Passes of this render alone.
     void update(std::uint64_t passes);
     void finish(std::uint64_t passes);
     double elapsed() const { return status_.elapsed(); }
@@ -22,6 +24,7 @@ class Progress {
 
     RenderBudget limits_;
     int photons_per_pass_;
+    std::uint64_t earlier_passes_;
     StatusLine status_;
 };
 

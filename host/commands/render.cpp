@@ -2,21 +2,19 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "commands/image_output.h"
 #include "commands/interrupt.h"
 #include "commands/parse.h"
 #include "commands/progress.h"
 #include "commands/render_arguments.h"
+#include "commands/render_checkpoint.h"
 #include "image/output_file.h"
-#include "image/write_image.h"
 #include "render/choose_method.h"
 #include "render/image_metadata.h"
 #include "render/stats_json.h"
 #include "render/team.h"
 
-#include <cmath>
-#include <filesystem>
 #include <memory>
-#include <strings.h>
 
 namespace tristim {
 namespace {
@@ -25,13 +23,11 @@ constexpr std::uint64_t default_passes = 64;
 
 struct RenderCommand {
     RenderArguments arguments;
-    std::vector<std::string> outfiles;
+    ImageOutput image;
+    CheckpointArguments checkpoint;
     std::optional<std::uint64_t> passes;
     std::optional<double> seconds;
     std::string pass_range;
-    std::string space = "srgb";
-    std::string tone_mapping = "photographic";
-    double exposure = 0.0;
     std::string stats;
     bool quiet = false;
 };
@@ -43,15 +39,9 @@ std::vector<DeviceInfo> infos(const std::vector<Device>& devices) {
     return result;
 }
 
-bool is_exr(const std::string& path) {
-    return ::strcasecmp(std::filesystem::path(path).extension().c_str(), ".exr") == 0;
-}
-
 RenderBudget limits(const RenderCommand& command, const Scene& scene) {
     if (command.seconds)
         check_seconds(*command.seconds, "--time");
-    if (!std::isfinite(command.exposure))
-        fail("--exposure must be a finite number of stops");
     if (!command.pass_range.empty()) {
         const PassRanges range = PassRanges::parse(command.pass_range);
         if (range.ranges().size() != 1)
@@ -64,14 +54,22 @@ RenderBudget limits(const RenderCommand& command, const Scene& scene) {
 }
 
 /// Renders passes until a limit is reached, the user interrupts or no device is left.
-RenderOutcome render_passes(Team& team, const RenderOptions& options, const RenderBudget& limits, bool quiet) {
-    Progress progress(limits, options.photons_per_pass, quiet);
+RenderOutcome render_passes(Team& team, const RenderOptions& options, const RenderBudget& limits,
+                            RenderCheckpoint& checkpoint, bool quiet) {
+    const std::uint64_t earlier = checkpoint.resumed_passes().count();
+    RenderBudget left = limits;
+    if (limits.passes)
+        left.passes = passes_to_do(limits, checkpoint.resumed_passes()).count();
+    Progress progress(left, options.photons_per_pass, quiet, earlier);
+    checkpoint.begin(team);
     team.render(limits, [&](std::uint64_t done) {
         progress.update(done);
+        checkpoint.update(team);
         return !interrupted();
     });
     RenderOutcome outcome = team.outcome();
-    progress.finish(outcome.statistics.passes);
+    progress.finish(outcome.statistics.passes - earlier);
+    outcome.statistics.render_seconds += checkpoint.resumed_seconds();
     return outcome;
 }
 
@@ -121,44 +119,40 @@ void run(RenderCommand& command) {
     const double load_seconds = loading.seconds();
     RenderOptions options = resolve_options(command.arguments, scene);
     const RenderBudget stop = limits(command, scene);
-    if (command.outfiles.empty())
-        command.outfiles.push_back(scene.settings.filename);
-    for (const std::string& path : command.outfiles)
-        check_writable(path);
+    if (command.image.outfiles.empty())
+        command.image.outfiles.push_back(scene.settings.filename);
+    check(command.image);
     if (!command.stats.empty())
         check_output_file(command.stats);
     if (!command.quiet)
         print_notes(scene);
 
+    RenderCheckpoint checkpoint(command.checkpoint);
+    checkpoint.choose_method(options);
+    if (!options.auto_method)
+        checkpoint.check(scene, options);
     catch_interrupts();
     const std::vector<Device> devices = open_devices(command.arguments.device);
     std::shared_ptr<const DeviceScene> device_scene;
     if (options.auto_method) {
         device_scene = std::make_shared<const DeviceScene>(scene, options, devices.front());
         choose(device_scene, devices.front(), stop, command.quiet, options);
+        checkpoint.check(scene, options);
     }
     Team team(scene, options, devices, device_scene);
-    const RenderOutcome outcome = render_passes(team, options, stop, command.quiet);
+    const RenderOutcome outcome = render_passes(team, options, stop, checkpoint, command.quiet);
     const RenderStatistics& statistics = outcome.statistics;
     const bool complete = report_failures(outcome, stop);
     if (statistics.passes == 0)
         fail("{} before the first pass was done: no image written",
              interrupted() ? "interrupted" : "no device was left");
 
+    const bool saved = checkpoint.save(outcome.sums);
     const FilmImage film = developed(outcome.sums, options);
-    const XyzImage image = xyz_image(film);
-    const ColourSpace space = command.space == "xyz" ? ColourSpace::CieXyz : ColourSpace::Srgb;
-    const ToneMapping tone_mapping{command.tone_mapping == "linear" ? ToneMapping::Kind::Linear
-                                                                    : ToneMapping::Kind::Photographic,
-                                   command.exposure};
-    for (const std::string& path : command.outfiles) {
-        if (is_exr(path))
-            write_exr(
-                path, image, space,
-                image_metadata(options, statistics, infos(devices), command.arguments.scene, film.rejected_samples));
-        else
-            write_png(path, image, tone_mapping);
-    }
+    write(
+        command.image, xyz_image(film),
+        with_passes(image_metadata(options, statistics, infos(devices), command.arguments.scene, film.rejected_samples),
+                    outcome.sums.passes));
     if (!command.stats.empty()) {
         const std::string json = stats_json(options, outcome, command.arguments.scene, load_seconds).dump(2) + "\n";
         replace_file(command.stats, json);
@@ -166,15 +160,20 @@ void run(RenderCommand& command) {
     if (film.rejected_samples > 0)
         fmt::print(stderr, "warning: {} values were not finite and left out: {}\n", film.rejected_samples,
                    describe(outcome.sums.non_finite));
+    std::vector<std::string> written = command.image.outfiles;
+    if (checkpoint.is_wanted() && saved)
+        written.push_back(checkpoint.path());
     if (!command.quiet)
         fmt::print(stderr, "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {} non-finite values; wrote {}\n",
                    interrupted() ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
                    statistics.render_seconds, statistics.build_kernels_seconds, film.rejected_samples,
-                   fmt::join(command.outfiles, ", "));
+                   fmt::join(written, ", "));
     if (!interrupted())
         team.keep_programs();
-    if (!complete)
+    if (!complete || !saved)
         throw CLI::RuntimeError(1);
+    if (interrupted() && !(stop.passes && passes_to_do(stop, outcome.sums.passes).empty()))
+        throw CLI::RuntimeError(exit_interrupted_and_saved);
 }
 
 } // namespace
@@ -183,25 +182,20 @@ void add_render_command(CLI::App& app) {
     auto command = std::make_shared<RenderCommand>();
     command->arguments.accepts_auto = true;
     CLI::App* sub = app.add_subcommand("render", "Render a scene to EXR and PNG images");
+    sub->footer(
+        fmt::format("Ctrl-C and SIGTERM end a render after the passes under way, which are saved as any others; "
+                    "the exit status is {} then. A second one ends it at once.",
+                    exit_interrupted_and_saved));
     add_render_arguments(*sub, command->arguments);
-    sub->add_option("--outfile", command->outfiles, "Image to write, may be repeated [the scene's film filename]")
-        ->type_name("FILE.exr|FILE.png")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_image_output(*sub, command->image, "Image to write, may be repeated [the scene's film filename]");
     auto* passes = sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]")
                        ->check(CLI::PositiveNumber);
     sub->add_option("--pass-range", command->pass_range,
                     "Render only passes A to B - 1 of an image, see `tristim merge`")
         ->type_name("A:B")
         ->excludes(passes);
+    add_checkpoint_options(*sub, command->checkpoint);
     sub->add_option("--time", command->seconds, "Seconds to render; with --passes, the first reached ends the render");
-    sub->add_option("--space", command->space, "Channels of EXR files: linear sRGB (R, G, B) or xyz (X, Y, Z)")
-        ->check(CLI::IsMember({"srgb", "xyz"}))
-        ->capture_default_str();
-    sub->add_option("--tonemap", command->tone_mapping, "Tone mapping of PNG files")
-        ->check(CLI::IsMember({"photographic", "linear"}))
-        ->capture_default_str();
-    sub->add_option("--exposure", command->exposure, "Exposure of PNG files in stops")->capture_default_str();
     sub->add_option("--stats", command->stats, "Write times, rays and memory as JSON")->type_name("FILE.json");
     sub->add_flag("--quiet", command->quiet, "No progress, notes or summary; errors still show");
     sub->callback([command] { run(*command); });

@@ -1,6 +1,7 @@
 #include "image/output_file.h"
 
 #include "base/error.h"
+#include "base/parse_number.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -32,12 +33,26 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
+/// Of temporary files' names, a process's number follows.
+std::string temporary_prefix(const fs::path& target) {
+    return fmt::format(".{}.tmp", target.filename().string());
+}
+
+/// Makes a renaming in it last. Not all file systems can, which is no reason to call a file that stands there lost.
+void flush_folder(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0)
+        return;
+    static_cast<void>(::fsync(descriptor));
+    ::close(descriptor);
+}
+
 /// An open temporary file beside the target, removed unless it has replaced it.
 class TemporaryFile {
   public:
     TemporaryFile(const fs::path& target, std::string user_path)
         : user_path_(std::move(user_path)), target_(target),
-          name_(folder_of(target) / fmt::format(".{}.tmp{}", target.filename().string(), ::getpid())),
+          name_(folder_of(target) / fmt::format("{}{}", temporary_prefix(target), ::getpid())),
           descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
         if (descriptor_ < 0)
             fail_to_write(user_path_, std::strerror(errno));
@@ -67,6 +82,7 @@ class TemporaryFile {
         if (::fsync(descriptor_) != 0 || close() != 0 || std::rename(name_.c_str(), target_.c_str()) != 0)
             fail_to_write(user_path_, std::strerror(errno));
         renamed_ = true;
+        flush_folder(folder_of(target_));
     }
 
   private:
@@ -118,6 +134,17 @@ void replace_file(const std::string& path, std::span<const unsigned char> bytes)
     TemporaryFile file(final_path(path), path);
     file.write(bytes);
     file.replace_target();
+}
+
+void remove_leftovers(const std::string& path) {
+    const fs::path target = final_path(path);
+    const std::string prefix = temporary_prefix(target);
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(target), ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(prefix) && parse_number<std::uint32_t>(std::string_view(name).substr(prefix.size())))
+            fs::remove(entry.path(), ignored);
+    }
 }
 
 void make_folder(const std::string& path) {

@@ -14,11 +14,15 @@ void check_output_file(const std::string& path);
 void make_folder(const std::string& path);
 
 /// Replaces the file as a whole, or leaves what was there: writes a temporary file in the same folder, flushes it to
-/// the disk and renames it. A symbolic link stays and its target is replaced. Throws Error, with the temporary file
-/// removed.
+/// the disk and renames it; and flushes the folder, as far as its file system can. A symbolic link stays and its target
+/// is replaced. Throws Error, with the temporary file removed.
 void replace_file(const std::string& path, std::span<const unsigned char> bytes);
 
-/// The same with text.
+/// Removes what a process that was killed while it replaced the file may have left beside it. Not while another one
+/// writes to it.
+void remove_leftovers(const std::string& path);
+
+/// The same as the first, with text.
 void replace_file(const std::string& path, std::string_view text);
 
 } // namespace tristim

@@ -2,6 +2,7 @@
 
 #include "base/embedded_files.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/read_file.h"
 #include "opencl/errors.h"
 #include "opencl/program_cache.h"
@@ -97,6 +98,21 @@ std::string flatten_kernel_source(const std::string& kernel_file) {
     std::string source;
     append_flattened(kernel_file, kernel_text(kernel_file, ""), "", seen, source);
     return source;
+}
+
+std::string hash_kernel_sources(const std::string& source_dir) {
+    constexpr std::string_view folder = "kernels/";
+    Hash hash;
+    for (const auto& [path, text] : embedded_files()) {
+        if (!path.starts_with(folder) || path.starts_with("kernels/selftest/"))
+            continue;
+        const std::string file = path.substr(folder.size());
+        if (!source_dir.empty() && !std::filesystem::exists(std::filesystem::path(source_dir) / file))
+            continue; // of dumped programs there are no headers
+        hash.add(std::string_view(path));
+        hash.add(std::string_view(kernel_text(file, source_dir)));
+    }
+    return hash.hexadecimal();
 }
 
 ::cl::Program build_program(const Device& device, const std::string& kernel_file, const Macros& macros,

@@ -21,6 +21,10 @@ struct BuildOptions {
 /// The source of a kernel file ("eye_pass.cl") with its includes put in place, each once.
 std::string flatten_kernel_source(const std::string& kernel_file);
 
+/// A hash of all kernel files and headers but those of selftest, as they are in the binary or, where there are any, in
+/// a folder: 16 hexadecimal digits.
+std::string hash_kernel_sources(const std::string& source_dir);
+
 /// Builds one kernel file for a device. Throws Error with the build log if it does not compile.
 ::cl::Program build_program(const Device& device, const std::string& kernel_file, const Macros& macros,
                             const BuildOptions& options);

@@ -27,6 +27,13 @@ ImageMetadata image_metadata(const RenderOptions& options, const RenderStatistic
             {"version", std::string(TRISTIM_VERSION)}};
 }
 
+ImageMetadata with_passes(ImageMetadata metadata, const PassRanges& passes) {
+    const bool first_ones = passes.ranges().size() <= 1 && passes.missing(0, 1).empty();
+    if (!first_ones)
+        metadata.emplace_back("pass_ranges", passes.text());
+    return metadata;
+}
+
 ImageMetadata image_metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples) {
     return image_metadata(renderer.options(), renderer.statistics(), {renderer.device().info}, scene, rejected_samples);
 }

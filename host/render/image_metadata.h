@@ -13,7 +13,10 @@ ImageMetadata image_metadata(const RenderOptions& options, const RenderStatistic
                              const std::vector<DeviceInfo>& devices, const std::string& scene,
                              std::uint64_t rejected_samples);
 
-/// The same for a renderer alone.
+/// The same with the numbers of the passes, unless these are the first ones.
+ImageMetadata with_passes(ImageMetadata metadata, const PassRanges& passes);
+
+/// The first for a renderer alone.
 ImageMetadata image_metadata(const Renderer& renderer, const std::string& scene, std::uint64_t rejected_samples);
 
 } // namespace tristim

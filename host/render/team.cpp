@@ -74,6 +74,13 @@ Team::Team(const Scene& scene, const RenderOptions& options, const std::vector<D
     }
 }
 
+std::vector<DeviceInfo> Team::devices() const {
+    std::vector<DeviceInfo> devices;
+    for (const Member& member : members_)
+        devices.push_back(member.device);
+    return devices;
+}
+
 std::vector<float> Team::initial_radii() const {
     return members_[first_].renderer->initial_radii();
 }

@@ -48,6 +48,8 @@ class Team {
     /// then leaves out the passes that these sums hold. Radii are as initial_radii().
     void resume(const RenderSums& sums, const std::vector<float>& radii);
 
+    std::vector<DeviceInfo> devices() const;
+
     /// The search radius of each pixel in pass 0, scene units. Not while it renders.
     std::vector<float> initial_radii() const;
 

@@ -1,39 +1,9 @@
-#include "bench/scene_identity.h"
+#include "render/scene_identity.h"
 
-#include <fmt/format.h>
-
-#include <cstdint>
-#include <type_traits>
-#include <vector>
+#include "base/hash.h"
 
 namespace tristim {
 namespace {
-
-/// FNV-1a with 64 bits (Fowler, Noll & Vo; RFC 9923).
-class Hash {
-  public:
-    template <typename T>
-    void add(const T& value) {
-        // The structs of kernels/shared_types.h have four-byte members alone, so none of these bytes is padding.
-        static_assert(std::is_arithmetic_v<T> || alignof(T) == 4);
-        static_assert(std::is_trivially_copyable_v<T>);
-        const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-        for (std::size_t i = 0; i < sizeof(T); ++i)
-            state_ = (state_ ^ bytes[i]) * 0x100000001b3U;
-    }
-
-    template <typename T>
-    void add(const std::vector<T>& values) {
-        add(static_cast<std::uint64_t>(values.size()));
-        for (const T& value : values)
-            add(value);
-    }
-
-    std::string hexadecimal() const { return fmt::format("{:016x}", state_); }
-
-  private:
-    std::uint64_t state_ = 0xcbf29ce484222325U;
-};
 
 /// What follows from the scene and from the part of the image that is rendered is none of the camera's.
 SceneConstants camera_alone(SceneConstants constants) {

@@ -1,0 +1,79 @@
+#include "commands/merge.h"
+
+#include "base/error.h"
+#include "base/parse_number.h"
+#include "commands/image_output.h"
+#include "image/output_file.h"
+#include "render/checkpoint.h"
+#include "render/image_metadata.h"
+
+#include <memory>
+
+namespace tristim {
+namespace {
+
+struct MergeCommand {
+    std::vector<std::string> files;
+    ImageOutput image;
+    std::string checkpoint;
+    bool any_radii = false;
+    bool quiet = false;
+};
+
+ImageMetadata metadata_of(const Checkpoint& c) {
+    const auto integer = [&](const std::string& setting) {
+        return parse_number<std::int64_t>(value_of(c.identity, setting)).value_or(0);
+    };
+    const auto passes = static_cast<std::int64_t>(c.sums.passes.count());
+    return with_passes({{"scene", c.scene},
+                        {"method", value_of(c.identity, "method")},
+                        {"sequence", value_of(c.identity, "sequence")},
+                        {"passes", passes},
+                        {"photons", passes * integer("photons per pass")},
+                        {"seed", integer("seed")},
+                        {"device", c.devices},
+                        {"seconds_rendering", c.seconds},
+                        {"non_finite_samples", static_cast<std::int64_t>(c.sums.non_finite.total())},
+                        {"version", std::string(TRISTIM_VERSION)}},
+                       c.sums.passes);
+}
+
+void merge(const MergeCommand& command) {
+    if (command.image.outfiles.empty() && command.checkpoint.empty())
+        fail("nothing to write: give --outfile or --checkpoint");
+    check(command.image);
+    if (!command.checkpoint.empty())
+        check_output_file(command.checkpoint);
+    Checkpoint sum = read_checkpoint(command.files.front());
+    for (std::size_t i = 1; i < command.files.size(); ++i)
+        add_checkpoint(sum, command.files.front(), read_checkpoint(command.files[i]), command.files[i],
+                       command.any_radii);
+    if (!command.checkpoint.empty())
+        write_checkpoint(command.checkpoint, sum);
+    const FilmImage film = develop_film(sum.sums.film, sum.width, sum.height, sum.region);
+    write(command.image, xyz_image(film), metadata_of(sum));
+    if (!command.quiet)
+        fmt::print(stderr, "{} passes ({}); {} non-finite values\n", sum.sums.passes.count(), sum.sums.passes.text(),
+                   sum.sums.non_finite.total());
+}
+
+} // namespace
+
+void add_merge_command(CLI::App& app) {
+    auto command = std::make_shared<MergeCommand>();
+    CLI::App* sub = app.add_subcommand("merge", "Add up passes of one image that were rendered apart, to EXR and PNG");
+    sub->add_option("files", command->files,
+                    "Checkpoints (render --checkpoint) of one render, no pass in two of them; one alone will do")
+        ->required()
+        ->type_name("CHECKPOINT.exr");
+    add_image_output(*sub, command->image, "Image to write, may be repeated");
+    sub->add_option("--checkpoint", command->checkpoint, "Write the sums, for render --resume or another merge")
+        ->type_name("FILE.exr");
+    sub->add_flag("--any-radii", command->any_radii,
+                  "Add up passes although devices measured other initial radii. The image is as right, but not the "
+                  "bits that one device would render");
+    sub->add_flag("--quiet", command->quiet, "No summary; errors still show");
+    sub->callback([command] { merge(*command); });
+}
+
+} // namespace tristim
