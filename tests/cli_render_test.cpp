@@ -42,7 +42,7 @@ nlohmann::json read_json(const std::string& path) {
 
 TEST_F(CliRender, HelpOfEveryCommandExitsWithZero) {
     for (const char* command :
-         {"render", "reference", "bench", "report", "devices", "compare", "bench-rays", "bench-pass"}) {
+         {"render", "merge", "reference", "bench", "report", "devices", "compare", "bench-rays", "bench-pass"}) {
         const ChildResult help = run_tristim({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_NE(help.standard_output.find(std::string("tristim ") + command), std::string::npos)
@@ -65,7 +65,8 @@ TEST_F(CliRender, HelpNamesEveryOptionAndDefaults) {
                               "=sample",        "--radius",  "=global",         "--initial-radius", "auto",
                               "--max-depth",    "16",        "--math",          "=precise",         "--space",
                               "=srgb",          "--tonemap", "=photographic",   "--exposure",       "--stats",
-                              "--dump-kernels", "--quiet",   "--radius-factor", "--alpha",          "--rgb-upsampling"})
+                              "--dump-kernels", "--quiet",   "--radius-factor", "--alpha",          "--rgb-upsampling",
+                              "--checkpoint",   "--every",   "--resume",        "--pass-range",     "exit status is 3"})
         EXPECT_NE(help.find(words), std::string::npos) << words << " is not in\n" << help;
 }
 
@@ -226,7 +227,7 @@ TEST_F(CliRender, InterruptWritesThePassesDone) {
     ChildLimits limits;
     limits.interrupt_after = std::chrono::milliseconds(500);
     const ChildResult result = render({"--time=300", "--outfile", path, "--stats", stats}, limits);
-    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_EQ(result.exit_code, 3) << result.standard_error;
     EXPECT_NE(result.standard_error.find("interrupted"), std::string::npos) << result.standard_error;
     const long passes = read_json(stats).at("passes").get<long>();
     EXPECT_GE(passes, 1);

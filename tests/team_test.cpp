@@ -117,18 +117,7 @@ TEST(Team, GoesOnFromSums) {
             team.resume(sums, radii);
         else
             radii = team.initial_radii();
-        std::uint64_t asked = 0, given = 0;
-        team.render({count, {}, first}, [&](std::uint64_t) {
-            if (asked++ == 0)
-                team.request_sums();
-            if (const auto now = team.requested_sums()) {
-                ++given;
-                EXPECT_TRUE(holds_passes(now->film, now->passes.count()));
-                EXPECT_EQ(now->passes.common(sums.passes), sums.passes);
-            }
-            return true;
-        });
-        EXPECT_GT(given, 0U);
+        team.render({count, {}, first}, [](std::uint64_t) { return true; });
         const PassRanges before = sums.passes;
         const RenderOutcome outcome = team.outcome();
         sums = outcome.sums;
@@ -137,6 +126,50 @@ TEST(Team, GoesOnFromSums) {
         EXPECT_EQ(outcome.shares[0].passes + outcome.shares[1].passes + before.count(), sums.passes.count());
     }
     EXPECT_EQ(sums.passes.text(), "0:18");
+}
+
+TEST(Team, GivesOutSumsWhileItRenders) {
+    Team team(load_scene(scene_path), options(), devices({"", ""}));
+    team.request_sums();
+    RenderSums last;
+    int given = 0;
+    team.render({}, [&](std::uint64_t) {
+        if (const auto sums = team.requested_sums()) {
+            EXPECT_TRUE(holds_passes(sums->film, sums->passes.count()));
+            EXPECT_EQ(sums->passes.common(last.passes), last.passes);
+            last = *sums;
+            ++given;
+            team.request_sums();
+        }
+        return given < 3;
+    });
+    EXPECT_GT(last.passes.count(), 2U);
+    const RenderSums all = team.outcome().sums;
+    EXPECT_EQ(all.passes.common(last.passes), last.passes);
+    EXPECT_EQ(all.passes, PassRanges(0, static_cast<std::uint32_t>(all.passes.count())));
+}
+
+/// Radii that follow each pixel's statistics are in the sums, so that passes can go on in order, and in no other.
+TEST(Team, StatisticsRadiiGoOn) {
+    RenderOptions statistics = options();
+    statistics.statistics_radius = true;
+    const Scene scene = load_scene(scene_path);
+    const auto render_from = [&](const RenderSums& sums, const std::vector<float>& radii, const RenderBudget& limits) {
+        Team team(scene, statistics, devices({""}));
+        if (!radii.empty())
+            team.resume(sums, radii);
+        team.render(limits, [](std::uint64_t) { return true; });
+        return std::pair(team.outcome().sums, team.initial_radii());
+    };
+    const auto [whole, radii] = render_from({}, {}, {9, {}});
+    const RenderSums part = render_from({}, {}, {4, {}}).first;
+    const RenderSums resumed = render_from(part, radii, {9, {}}).first;
+    ASSERT_EQ(resumed.film.size(), whole.film.size());
+    EXPECT_EQ(std::memcmp(resumed.film.data(), whole.film.data(), whole.film.size() * sizeof(FilmPixel)), 0);
+    EXPECT_EQ(resumed.rays.photon, whole.rays.photon);
+    EXPECT_EQ(resumed.photons_stored, whole.photons_stored);
+    expect_words(error_of([&] { render_from(part, radii, {3, {}, 5}); }), {"--radius statistics", "5:8", "0:4"});
+    expect_words(error_of([&] { render_from({}, {}, {3, {}, 5}); }), {"--radius statistics", "5:8", "none"});
 }
 
 TEST(Team, WithoutAnyDeviceItSaysWhy) {

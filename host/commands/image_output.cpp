@@ -1,6 +1,7 @@
 #include "commands/image_output.h"
 
 #include "base/error.h"
+#include "render/checkpoint.h"
 
 #include <cmath>
 #include <filesystem>
@@ -29,11 +30,14 @@ void add_image_output(CLI::App& command, ImageOutput& output, const std::string&
     command.add_option("--exposure", output.exposure, "Exposure of PNG files in stops")->capture_default_str();
 }
 
-void check(const ImageOutput& output) {
+void check(const ImageOutput& output, const std::string& checkpoint) {
     if (!std::isfinite(output.exposure))
         fail("--exposure must be a finite number of stops");
-    for (const std::string& path : output.outfiles)
+    for (const std::string& path : output.outfiles) {
         check_writable(path);
+        if (path == checkpoint || is_checkpoint(path))
+            fail("cannot write an image to \"{}\": a checkpoint is there, or will be", path);
+    }
 }
 
 void write(const ImageOutput& output, const XyzImage& image, const ImageMetadata& metadata) {

@@ -21,8 +21,9 @@ struct ImageOutput {
 /// Registers --outfile (with its help), --space, --tonemap and --exposure.
 void add_image_output(CLI::App& command, ImageOutput& output, const std::string& outfile_help);
 
-/// Throws Error for values that make no sense and for files that cannot be written; changes nothing.
-void check(const ImageOutput& output);
+/// Throws Error for values that make no sense and for files that cannot be written, or that are checkpoints or
+/// `checkpoint`, the path where one will be or ""; changes nothing.
+void check(const ImageOutput& output, const std::string& checkpoint);
 
 /// Writes all files. Throws Error.
 void write(const ImageOutput& output, const XyzImage& image, const ImageMetadata& metadata);

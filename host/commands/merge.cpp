@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "commands/image_output.h"
-#include "image/output_file.h"
 #include "render/checkpoint.h"
 #include "render/image_metadata.h"
 
@@ -41,9 +40,9 @@ ImageMetadata metadata_of(const Checkpoint& c) {
 void merge(const MergeCommand& command) {
     if (command.image.outfiles.empty() && command.checkpoint.empty())
         fail("nothing to write: give --outfile or --checkpoint");
-    check(command.image);
+    check(command.image, command.checkpoint);
     if (!command.checkpoint.empty())
-        check_output_file(command.checkpoint);
+        check_new_checkpoint(command.checkpoint);
     Checkpoint sum = read_checkpoint(command.files.front());
     for (std::size_t i = 1; i < command.files.size(); ++i)
         add_checkpoint(sum, command.files.front(), read_checkpoint(command.files[i]), command.files[i],
@@ -67,7 +66,7 @@ void add_merge_command(CLI::App& app) {
         ->required()
         ->type_name("CHECKPOINT.exr");
     add_image_output(*sub, command->image, "Image to write, may be repeated");
-    sub->add_option("--checkpoint", command->checkpoint, "Write the sums, for render --resume or another merge")
+    sub->add_option("--checkpoint", command->checkpoint, "New file for the sums, for render --resume or another merge")
         ->type_name("FILE.exr");
     sub->add_flag("--any-radii", command->any_radii,
                   "Add up passes although devices measured other initial radii. The image is as right, but not the "

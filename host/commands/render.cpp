@@ -121,13 +121,13 @@ void run(RenderCommand& command) {
     const RenderBudget stop = limits(command, scene);
     if (command.image.outfiles.empty())
         command.image.outfiles.push_back(scene.settings.filename);
-    check(command.image);
+    RenderCheckpoint checkpoint(command.checkpoint);
+    check(command.image, checkpoint.path());
     if (!command.stats.empty())
         check_output_file(command.stats);
     if (!command.quiet)
         print_notes(scene);
 
-    RenderCheckpoint checkpoint(command.checkpoint);
     checkpoint.choose_method(options);
     if (!options.auto_method)
         checkpoint.check(scene, options);
@@ -154,8 +154,10 @@ void run(RenderCommand& command) {
         with_passes(image_metadata(options, statistics, infos(devices), command.arguments.scene, film.rejected_samples),
                     outcome.sums.passes));
     if (!command.stats.empty()) {
-        const std::string json = stats_json(options, outcome, command.arguments.scene, load_seconds).dump(2) + "\n";
-        replace_file(command.stats, json);
+        nlohmann::ordered_json json = stats_json(options, outcome, command.arguments.scene, load_seconds);
+        if (checkpoint.is_wanted())
+            json["checkpoints"] = checkpoint.stats_json();
+        replace_file(command.stats, json.dump(2) + "\n");
     }
     if (film.rejected_samples > 0)
         fmt::print(stderr, "warning: {} values were not finite and left out: {}\n", film.rejected_samples,

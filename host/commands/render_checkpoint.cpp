@@ -63,9 +63,7 @@ RenderCheckpoint::RenderCheckpoint(const CheckpointArguments& arguments)
     }
     if (path_.empty())
         return;
-    if (exists(path_) && !one_file)
-        fail("\"{}\" is there already: go on from it by --resume, or give --checkpoint another name", path_);
-    check_output_file(path_);
+    one_file ? check_output_file(path_) : check_new_checkpoint(path_);
     remove_leftovers(path_);
 }
 
@@ -119,6 +117,10 @@ void RenderCheckpoint::update(Team& team) {
         save(std::move(*sums));
 }
 
+nlohmann::ordered_json RenderCheckpoint::stats_json() const {
+    return {{"file", path_}, {"written", times_written_}, {"seconds", all_writing_seconds_}};
+}
+
 bool RenderCheckpoint::save(RenderSums sums) {
     if (path_.empty() || sums.passes == written_)
         return true;
@@ -129,6 +131,7 @@ bool RenderCheckpoint::save(RenderSums sums) {
     try {
         write_checkpoint(path_, state_);
         written_ = state_.sums.passes;
+        ++times_written_;
     } catch (const std::exception& error) {
         fmt::print(stderr, "warning: no checkpoint of {} passes: {}{}\n", state_.sums.passes.count(), error.what(),
                    written_.empty() ? "" : fmt::format("; that of {} passes is still there", written_.count()));
@@ -136,6 +139,7 @@ bool RenderCheckpoint::save(RenderSums sums) {
     }
     state_.sums = {};
     writing_seconds_ = writing.seconds();
+    all_writing_seconds_ += writing_seconds_;
     written_at_ = stopwatch_.seconds();
     return written;
 }

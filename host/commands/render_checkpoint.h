@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +49,9 @@ class RenderCheckpoint {
     /// wanted); if not, stderr tells why.
     bool save(RenderSums sums);
 
+    /// How often the file was written and what that took, for --stats.
+    nlohmann::ordered_json stats_json() const;
+
     bool is_wanted() const { return !path_.empty(); }
     const std::string& path() const { return path_; }
     const PassRanges& resumed_passes() const { return resumed_; }
@@ -61,8 +66,10 @@ class RenderCheckpoint {
     double resumed_seconds_ = 0.0;
     PassRanges written_; ///< in the file
     Stopwatch stopwatch_;
-    double written_at_ = 0.0; ///< on the stopwatch
-    double writing_seconds_ = 0.0;
+    double written_at_ = 0.0;      ///< on the stopwatch
+    double writing_seconds_ = 0.0; ///< the last time
+    std::uint64_t times_written_ = 0;
+    double all_writing_seconds_ = 0.0;
     bool requested_ = false;
 };
 

@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <fmt/ranges.h>
+#include <fstream>
 #include <memory>
 #include <span>
 
@@ -25,6 +27,7 @@ constexpr const char* file_version = "1";
 constexpr std::string_view prefix = "tristim:";
 constexpr std::string_view settings_prefix = "tristim:setting:";
 constexpr std::string_view mark = "tristim:checkpoint";
+constexpr std::size_t header_bytes = 1U << 16U; ///< among them the mark stands
 /// Stands before the checksum, at the file's very end.
 constexpr std::string_view trailer = "\ntristim checksum ";
 constexpr std::size_t checksum_digits = 16;
@@ -151,11 +154,14 @@ std::string_view view(const std::vector<unsigned char>& bytes) {
     fail("cannot use the checkpoint \"{}\": it is damaged (cut short, or changed since it was written)", path);
 }
 
+bool has_mark(std::string_view bytes) {
+    return bytes.substr(0, header_bytes).find(mark) != std::string_view::npos;
+}
+
 /// The file's bytes without the checksum, which is theirs.
 std::string checked_bytes(const std::string& path) {
     std::string bytes = read_whole_file(path);
-    constexpr std::size_t header_bytes = 1U << 16U;
-    if (std::string_view(bytes).substr(0, header_bytes).find(mark) == std::string_view::npos)
+    if (!has_mark(bytes))
         fail("cannot use \"{}\" as a checkpoint: it was not written by tristim's --checkpoint", path);
     const std::size_t end = bytes.size() - std::min(bytes.size(), trailer.size() + checksum_digits + 1);
     const std::string_view rest = std::string_view(bytes).substr(end);
@@ -166,16 +172,14 @@ std::string checked_bytes(const std::string& path) {
     return bytes;
 }
 
-/// The texts of a header.
+/// The texts of a header. OpenImageIO leaves out those that are empty.
 class Header {
   public:
     Header(const std::string& path, const OIIO::ImageSpec& spec) : path_(path), spec_(spec) {}
 
     std::string text(const std::string& name, std::string_view before = prefix) const {
         const OIIO::ParamValue* found = spec_.find_attribute(std::string(before) + name, OIIO::TypeDesc::STRING);
-        if (found == nullptr)
-            fail_damaged(path_);
-        return found->get_string(0);
+        return found == nullptr ? "" : found->get_string(0);
     }
 
     template <typename Number>
@@ -263,6 +267,22 @@ Checkpoint read_checkpoint(const std::string& path) {
         copy_words(plane.first, plane.stride, values.data() + static_cast<std::size_t>(channel) * word, stride, pixels);
     }
     return c;
+}
+
+bool is_checkpoint(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        return false;
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(header_bytes, '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return has_mark(bytes);
+}
+
+void check_new_checkpoint(const std::string& path) {
+    check_output_file(path);
+    if (std::error_code ignored; std::filesystem::exists(path, ignored))
+        fail("\"{}\" is there already: go on from it by render --resume, or give --checkpoint another name", path);
 }
 
 void add_checkpoint(Checkpoint& checkpoint, const std::string& name, const Checkpoint& more,

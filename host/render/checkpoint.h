@@ -30,6 +30,13 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
 /// written by a version that wrote others.
 Checkpoint read_checkpoint(const std::string& path);
 
+/// Whether there is such a file, be it damaged.
+bool is_checkpoint(const std::string& path);
+
+/// Throws Error if a checkpoint cannot be written at the path, or if a file stands there: saved work is never replaced
+/// by other work.
+void check_new_checkpoint(const std::string& path);
+
 /// Adds the passes of another checkpoint of the same render. Throws Error, with both names, if it is another render's,
 /// some passes are in both, or radii are not the same (other devices may have measured others) unless `any_radii`; then
 /// those of `checkpoint` stay. Where radii follow each pixel's statistics, passes cannot be added.
