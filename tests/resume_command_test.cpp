@@ -1,68 +1,39 @@
 // Renders that are stopped, killed or run out of disk, and go on: `render --checkpoint` and `--resume`.
 
+#include "checkpoint_renders.h"
 #include "child_process.h"
 #include "image/read_image.h"
-#include "render/checkpoint.h"
-#include "scene_folder.h"
-#include "test_scenes.h"
 
 #include <OpenImageIO/imageio.h>
 
-#include <cstring>
+#include <csignal>
 #include <random>
+#include <sys/resource.h>
+#include <thread>
 
 namespace tristim::test {
 namespace {
 
-constexpr const char* scene_text = "Camera \"perspective\"\n"
-                                   "Film \"rgb\" \"integer xresolution\" [ 8 ] \"integer yresolution\" [ 6 ]\n"
-                                   "WorldBegin\n"
-                                   "LightSource \"point\" \"point3 from\" [ 0 1 0 ] \"spectrum I\" \"stdillum-A\"\n"
-                                   "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.3 0.1 ]\n"
-                                   "Shape \"bilinearmesh\" \"point3 P\" [ -20 -20 5  20 -20 5  -20 20 5  20 20 5 ]\n";
-
 class ResumeCommand : public testing::Test {
   protected:
-    /// The image goes to image.exr.
-    ChildResult render(std::vector<std::string> more, const ChildLimits& limits = {}) const {
-        more.insert(more.begin(), {"render", scene_, "--photons=256", "--space=xyz", "--outfile", image_});
-        return run_tristim(more, {}, limits);
-    }
-
-    std::string path(const std::string& name) const { return folder_.path(name); }
+    std::string path(const std::string& name) const { return renders.path(name); }
 
     void expect_no_temporary_files() const {
         for (const auto& entry : std::filesystem::directory_iterator(path("")))
             EXPECT_EQ(entry.path().filename().string().find(".tmp"), std::string::npos) << entry.path();
     }
 
-    const SceneFolder folder_;
-    const std::string scene_ = folder_.write("scene.pbrt", scene_text);
-    const std::string image_ = folder_.path("image.exr");
+    const CheckpointRenders renders;
 };
 
-template <typename T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-/// Sums, counts and radii of two renders by one device.
-void expect_same_sums(const Checkpoint& a, const Checkpoint& b) {
-    EXPECT_EQ(a.sums.passes, b.sums.passes);
-    EXPECT_TRUE(same_bytes(a.sums.film, b.sums.film));
-    EXPECT_TRUE(same_bytes(a.initial_radii, b.initial_radii));
-    EXPECT_EQ(a.sums.rays.camera, b.sums.rays.camera);
-    EXPECT_EQ(a.sums.rays.shadow, b.sums.rays.shadow);
-    EXPECT_EQ(a.sums.rays.photon, b.sums.rays.photon);
-    EXPECT_EQ(a.sums.photons_stored, b.sums.photons_stored);
-    EXPECT_EQ(a.identity, b.identity);
-}
-
-std::size_t words_in(const std::string& text, const std::string& words) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
-        ++count;
-    return count;
+/// Renders by one device come to the same bits, squares and counts included.
+void expect_same_sums(const RenderSums& a, const RenderSums& b) {
+    EXPECT_EQ(a.passes, b.passes);
+    EXPECT_TRUE(same_bytes(a.film, b.film));
+    EXPECT_EQ(a.rays.camera, b.rays.camera);
+    EXPECT_EQ(a.rays.shadow, b.rays.shadow);
+    EXPECT_EQ(a.rays.photon, b.rays.photon);
+    EXPECT_EQ(a.photons_stored, b.photons_stored);
 }
 
 std::int64_t passes_in(const std::string& image) {
@@ -82,8 +53,9 @@ TEST_F(ResumeCommand, KilledAnywhereNothingSavedIsLost) {
         ChildLimits limits;
         limits.interrupt_signal = SIGKILL;
         limits.interrupt_after = std::chrono::milliseconds(random() % 120);
-        const ChildResult result =
-            render({"--passes=1000000", "--checkpoint", checkpoint, "--resume", checkpoint, "--every=0.001"}, limits);
+        const ChildResult result = run_tristim(
+            renders.command({"--passes=1000000", "--checkpoint", checkpoint, "--resume", checkpoint, "--every=0.001"}),
+            {}, limits);
         ASSERT_EQ(result.exit_code, 128 + SIGKILL) << result.standard_error;
         if (!std::filesystem::exists(checkpoint))
             continue;
@@ -94,65 +66,114 @@ TEST_F(ResumeCommand, KilledAnywhereNothingSavedIsLost) {
         saved = now;
     }
     EXPECT_GT(with_progress, 0);
-    const std::string passes = fmt::format("--passes={}", saved.count() + 5);
-    ASSERT_EQ(render({passes, "--resume", checkpoint, "--quiet"}).exit_code, 0);
-    const XyzImage resumed = read_exr(image_);
-    ASSERT_EQ(render({passes, "--checkpoint", path("whole.exr"), "--quiet"}).exit_code, 0);
-    expect_same_sums(read_checkpoint(checkpoint), read_checkpoint(path("whole.exr")));
-    EXPECT_TRUE(same_bytes(resumed.xyz, read_exr(image_).xyz));
-    EXPECT_EQ(passes_in(image_), static_cast<std::int64_t>(saved.count() + 5));
+    const std::uint64_t passes = saved.count() + 5;
+    const ChildResult last =
+        run_tristim(renders.command({fmt::format("--passes={}", passes), "--resume", checkpoint, "--quiet"}));
+    ASSERT_EQ(last.exit_code, 0) << last.standard_error;
     expect_no_temporary_files();
+    const RenderSums whole = renders.render({}, {passes, {}});
+    expect_same_sums(read_checkpoint(checkpoint).sums, whole);
+    EXPECT_EQ(passes_in(path("image.exr")), static_cast<std::int64_t>(passes));
+    EXPECT_TRUE(same_bytes(read_exr(path("image.exr")).xyz, developed(whole, renders.options()).xyz));
 }
 
-/// A scheduler takes the machine away; then the disk is full.
-TEST_F(ResumeCommand, TerminatedAllIsSavedAndOnAFullDiskTheOldStays) {
-    const std::string checkpoint = path("a.exr");
+/// A scheduler takes the machine away.
+TEST_F(ResumeCommand, TerminatedAllIsSaved) {
     ChildLimits limits;
     limits.interrupt_signal = SIGTERM;
     limits.interrupt_after = std::chrono::milliseconds(50);
-    const ChildResult stopped = render({"--resolution=32x24", "--time=300", "--checkpoint", checkpoint}, limits);
+    const ChildResult stopped = run_tristim(renders.command({"--time=300", "--checkpoint", path("a.exr")}), {}, limits);
     EXPECT_EQ(stopped.exit_code, 3) << stopped.standard_error;
     EXPECT_NE(stopped.standard_error.find("interrupted: "), std::string::npos) << stopped.standard_error;
-    const PassRanges passes = read_checkpoint(checkpoint).sums.passes;
-    EXPECT_FALSE(passes.empty());
-    EXPECT_EQ(passes_in(image_), static_cast<std::int64_t>(passes.count()));
+    const Checkpoint saved = read_checkpoint(path("a.exr"));
+    EXPECT_FALSE(saved.sums.passes.empty());
+    EXPECT_EQ(passes_in(path("image.exr")), static_cast<std::int64_t>(saved.sums.passes.count()));
+    EXPECT_GT(saved.seconds, 0.0);
+}
 
-    limits.file_size_then = std::filesystem::file_size(checkpoint) / 2;
-    limits.interrupt_after = std::chrono::milliseconds(200);
-    const ChildResult full = render(
-        {"--resolution=32x24", "--time=300", "--resume", checkpoint, "--every=0.05", "--outfile", path("image.png")},
-        limits);
-    EXPECT_EQ(full.exit_code, 1) << full.standard_error;
-    const PassRanges kept = read_checkpoint(checkpoint).sums.passes;
-    EXPECT_EQ(kept.common(passes), passes);
-    const std::string still = fmt::format("File too large; that of {} passes is still there\n", kept.count());
-    EXPECT_GE(words_in(full.standard_error, still), 2U) << full.standard_error;
-    EXPECT_TRUE(std::filesystem::exists(path("image.png")));
+/// The folder goes away: the render goes on, writes its image, and says so by its exit status.
+TEST_F(ResumeCommand, WhereTheLastCheckpointCannotBeWrittenTheStatusTells) {
+    const std::string folder = path("checkpoints"), checkpoint = folder + "/a.exr";
+    std::filesystem::create_directory(folder);
+    std::jthread remover([&](const std::stop_token& stop) {
+        while (!std::filesystem::exists(checkpoint) && !stop.stop_requested())
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (std::filesystem::exists(folder)) { // the render may be writing into it
+            std::error_code again;
+            std::filesystem::remove_all(folder, again);
+        }
+    });
+    const ChildResult result =
+        run_tristim(renders.command({"--time=0.4", "--checkpoint", checkpoint, "--every=0.001", "--quiet"}));
+    remover.request_stop();
+    EXPECT_EQ(result.exit_code, 1) << result.standard_error;
+    EXPECT_NE(result.standard_error.find("warning: no checkpoint of"), std::string::npos) << result.standard_error;
+    EXPECT_GE(passes_in(path("image.exr")), 1);
+}
+
+/// A disk that is full for a while: what was saved stays as it is, and later on saving works again.
+TEST_F(ResumeCommand, OnAFullDiskTheOldCheckpointStays) {
+    const std::string checkpoint = path("a.exr");
+    renders.render({checkpoint, {}, {}}, {3, {}});
+    const std::string before = read_text(checkpoint);
+    rlimit unlimited{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    int seen = 0;
+    testing::internal::CaptureStderr();
+    const RenderSums sums = renders.render({{}, checkpoint, 1e-6}, {8, {}}, [&] {
+        if (seen++ == 0) {
+            const rlimit full{before.size() / 2, unlimited.rlim_max};
+            ::setrlimit(RLIMIT_FSIZE, &full);
+        }
+    });
+    ::setrlimit(RLIMIT_FSIZE, &unlimited);
+    std::signal(SIGXFSZ, handler);
+    const std::string told = testing::internal::GetCapturedStderr();
+    EXPECT_NE(told.find("warning: no checkpoint of 8 passes: cannot write \"" + checkpoint +
+                        "\": File too large; that of 3 passes is still there\n"),
+              std::string::npos)
+        << told;
+    EXPECT_EQ(read_text(checkpoint), before);
     expect_no_temporary_files();
+    EXPECT_EQ(sums.passes, PassRanges(0, 8));
+    expect_same_sums(renders.render({{}, checkpoint, {}}, {8, {}}), sums);
+    expect_same_sums(read_checkpoint(checkpoint).sums, sums);
 }
 
 TEST_F(ResumeCommand, WhatCannotBeResumedIsRefused) {
     const std::string checkpoint = path("a.exr");
-    ASSERT_EQ(render({"--pass-range=2:4", "--checkpoint", checkpoint, "--quiet"}).exit_code, 0);
+    ASSERT_EQ(renders.render({checkpoint, {}, {}}, {2, {}, 2}).passes, PassRanges(2, 4));
     const std::string before = read_text(checkpoint);
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& words) {
-        const ChildResult result = render(arguments);
-        EXPECT_EQ(result.exit_code, 1) << words;
-        EXPECT_NE(result.standard_error.find(words), std::string::npos) << result.standard_error;
+    const auto refused = [&](const CheckpointArguments& arguments, const std::string& words) {
+        const std::string message = error_of([&] { renders.render(arguments, {9, {}}); });
+        EXPECT_NE(message.find(words), std::string::npos) << message;
         EXPECT_EQ(read_text(checkpoint), before);
     };
-    refused({"--resume", checkpoint, "--method=hero:4"},
-            "cannot resume \"" + checkpoint + "\": it was rendered with method tristimulus:1, not hero:4");
-    refused({"--checkpoint", checkpoint}, "is there already: go on from it by render --resume");
-    refused({"--resume", path("none.exr")}, "none.exr");
-    refused({"--resume", image_}, "it was not written by tristim's --checkpoint");
-    refused({"--resume", folder_.write("cut.exr", before.substr(0, before.size() / 2))}, "damaged");
-    refused({"--outfile", checkpoint}, "cannot write an image to");
-    refused({"--outfile", path("b.exr"), "--checkpoint", path("b.exr")}, "cannot write an image to");
-    refused({"--every=5"}, "--every needs --checkpoint");
-    refused({"--pass-range=5:5"}, "bad range of passes '5:5'");
-    refused({"--checkpoint", path("none/a.exr")}, "does not exist");
-    EXPECT_FALSE(std::filesystem::exists(path("none.exr")));
+    refused({checkpoint, {}, {}}, "is there already: go on from it by render --resume");
+    refused({{}, path("none.exr"), {}}, "none.exr");
+    refused({{}, renders.folder().write("cut.exr", before.substr(0, before.size() / 2)), {}}, "damaged");
+    refused({path("cut.exr"), checkpoint, {}}, "is there already");
+    refused({{}, {}, 5.0}, "--every needs --checkpoint");
+    refused({path("b.exr"), {}, 0.0}, "--every must be a positive number");
+    refused({path("none/a.exr"), {}, {}}, "does not exist");
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"--resume", checkpoint, "--method=hero:4"},
+          std::vector<std::string>{"--passes=1", "--outfile", checkpoint}}) {
+        const ChildResult result = run_tristim(renders.command(arguments));
+        EXPECT_EQ(result.exit_code, 1) << result.standard_error;
+        const std::string words =
+            arguments.front() == "--resume"
+                ? "cannot resume \"" + checkpoint + "\": it was rendered with method tristimulus:1, not hero:4\n"
+                : "cannot write an image to \"" + checkpoint + "\": a checkpoint is there";
+        EXPECT_NE(result.standard_error.find(words), std::string::npos) << result.standard_error;
+        EXPECT_EQ(read_text(checkpoint), before);
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("image.exr")));
+    // The file to resume may be missing where it is the one that will be written, and then every pass is rendered.
+    EXPECT_EQ(renders.render({path("new.exr"), path("new.exr"), {}}, {2, {}}).passes, PassRanges(0, 2));
+    EXPECT_EQ(renders.render({path("new.exr"), path("new.exr"), {}}, {3, {}}).passes, PassRanges(0, 3));
+    EXPECT_EQ(read_checkpoint(path("new.exr")).sums.passes, PassRanges(0, 3));
 }
 
 } // namespace
