@@ -190,7 +190,8 @@ void add_render_command(CLI::App& app) {
                     exit_interrupted_and_saved));
     add_render_arguments(*sub, command->arguments);
     add_image_output(*sub, command->image, "Image to write, may be repeated [the scene's film filename]");
-    auto* passes = sub->add_option("--passes", command->passes, "Passes to render [scene's pixelsamples, else 64]")
+    auto* passes = sub->add_option("--passes", command->passes,
+                                   "Passes to render, resumed ones included [scene's pixelsamples, else 64]")
                        ->check(CLI::PositiveNumber);
     sub->add_option("--pass-range", command->pass_range,
                     "Render only passes A to B - 1 of an image, see `tristim merge`")
