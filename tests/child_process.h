@@ -33,7 +33,6 @@ struct ChildLimits {
     std::optional<rlim_t> memory;                             ///< bytes of address space
     std::optional<std::chrono::milliseconds> interrupt_after; ///< counted from its first line on stderr
     int interrupt_signal = SIGINT;
-    std::optional<rlim_t> file_size_then; ///< file_size from its first line on stderr on, if interrupt_after is given
 };
 
 namespace child_detail {
@@ -87,10 +86,6 @@ inline ChildResult run_program(const std::string& program, const std::vector<std
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (::lseek(::fileno(err), 0, SEEK_END) == 0 && std::chrono::steady_clock::now() < deadline)
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        if (limits.file_size_then) {
-            const rlimit both{*limits.file_size_then, *limits.file_size_then};
-            ::prlimit(child, RLIMIT_FSIZE, &both, nullptr);
-        }
         std::this_thread::sleep_for(*limits.interrupt_after);
         ::kill(child, limits.interrupt_signal);
     }

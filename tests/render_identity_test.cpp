@@ -15,7 +15,7 @@ constexpr const char* cornell = "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspecti
                                 "Include \"shape.pbrt\"\n";
 constexpr const char* shape = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n";
 
-class Identity : public testing::Test {
+class IdentityOfRenders : public testing::Test {
   protected:
     RenderIdentity of(const std::string& scene, const std::string& included, const RenderOptions& options) const {
         folder_.write("shape.pbrt", included);
@@ -31,7 +31,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(text.find(from), from.size(), to);
 }
 
-TEST_F(Identity, FollowsContentAndNotTheFiles) {
+TEST_F(IdentityOfRenders, FollowsContentAndNotTheFiles) {
     EXPECT_EQ(of(std::string("# a comment\n\n") + cornell, shape, options_), is_);
     const auto difference = [&](const std::string& scene, const std::string& included) {
         return describe_difference(of(scene, included, options_), is_);
@@ -43,7 +43,7 @@ TEST_F(Identity, FollowsContentAndNotTheFiles) {
     EXPECT_EQ(difference(replaced(cornell, "0 0 -3", "0 0 -4"), shape), "its camera is another one");
 }
 
-TEST_F(Identity, NamesEveryOptionThatChangesTheImage) {
+TEST_F(IdentityOfRenders, NamesEveryOptionThatChangesTheImage) {
     const auto difference = [&](auto&& change) {
         RenderOptions options = options_;
         change(options);
@@ -81,7 +81,7 @@ TEST_F(Identity, NamesEveryOptionThatChangesTheImage) {
     EXPECT_EQ(difference([](O&) {}), "");
 }
 
-TEST_F(Identity, KernelsAndVersionMustAgree) {
+TEST_F(IdentityOfRenders, KernelsAndVersionMustAgree) {
     RenderOptions options = options_;
     options.kernels = folder_.path("kernels");
     std::filesystem::copy(TRISTIM_SOURCE_DIR "/kernels", options.kernels, std::filesystem::copy_options::recursive);
