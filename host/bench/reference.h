@@ -1,9 +1,9 @@
 #pragma once
 
 #include "bench/results.h"
-#include "render/scene_identity.h"
 #include "image/image.h"
 #include "render/device_scene.h"
+#include "render/scene_identity.h"
 
 #include <array>
 #include <cstdint>
