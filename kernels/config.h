@@ -127,6 +127,12 @@
 #define RADIUS_STATISTICS 0
 #endif
 
+// 1: photons are also gathered within radius/√2, and sums are kept from which noise and bias of the pixels are estimated
+// (host/render/error_estimate.h).
+#ifndef ERROR_ESTIMATE
+#define ERROR_ESTIMATE 0
+#endif
+
 // Photon paths that one work-item traces, one after the other, into a piece of the photon buffer of its own.
 #ifndef PATHS_PER_ITEM
 #define PATHS_PER_ITEM 64

@@ -20,6 +20,7 @@ Macros kernel_macros(const RenderOptions& options, const Effects& effects, const
     macros.emplace_back("MAX_DEPTH", std::to_string(options.max_depth));
     macros.emplace_back("DIRECT_PHOTONS", flag(options.direct_photons));
     macros.emplace_back("RADIUS_STATISTICS", flag(options.statistics_radius));
+    macros.emplace_back("ERROR_ESTIMATE", flag(options.error_estimate));
     macros.emplace_back("PATHS_PER_ITEM", std::to_string(tuning.paths_per_item));
     macros.emplace_back("RADIX_BITS", std::to_string(radix_bits(options.photons_per_pass)));
     macros.emplace_back("RECORD_RAYS", flag(options.record_rays));

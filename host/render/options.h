@@ -30,6 +30,7 @@ struct RenderOptions {
     bool statistics_radius = false; ///< Hachisuka et al. 2008's statistics of each pixel
     double photon_roughness = default_photon_roughness; ///< α from which on rough surfaces take photons
     Effects more_effects; ///< compiled in beside those that the scene calls for; they change nothing but the cost
+    bool error_estimate = false; ///< keep what noise and bias are estimated from (render/error_estimate.h)
     bool fast_math = false;
     std::string kernels;      ///< folder to read kernel sources from instead of the binary's own, or empty
     std::string dump_kernels; ///< folder for the programs as built, or empty

@@ -64,6 +64,7 @@ Renderer::Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions
     eye_spectra_ = Buffer<float>(device, "throughput spectra", has_coloured_eye(effects) ? pixels * padded : 0);
     largest_radius_ = Buffer<std::uint32_t>(device, "largest radius", 1);
     gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
+    inner_flux_ = Buffer<cl_float4>(device, "flux gathered within radius/sqrt(2)", options.error_estimate ? pixels : 0);
     film_ = Buffer<FilmPixel>(device, "film", pixels);
     non_finite_ = Buffer<std::uint32_t>(device, "counts of values that are not finite", 2 * NON_FINITE_COUNTS);
     largest_floor_ = largest_radius_floor(flat.constants);
@@ -305,6 +306,8 @@ void Renderer::gather_photons() {
          {&visible_surfaces_.cl(), &photon_surfaces_.cl(), &scene_->buffers().materials().cl(),
           &scene_->buffers().film_layers().cl(), &gathered_flux_.cl(), &non_finite_.cl()})
         gather_.setArg(argument++, *buffer);
+    if (options_.error_estimate)
+        gather_.setArg(argument, inner_flux_.cl());
     enqueue(Step::Gather, gather_, visible_points_.size(), device_.tuning.pixel_group);
 }
 

@@ -84,6 +84,7 @@ class Renderer {
     std::vector<Photon> photons() const;
     std::vector<float> pass_table() const { return pass_table_.read(device_); }
     std::vector<cl_float4> gathered_flux() const { return gathered_flux_.read(device_); }
+    std::vector<cl_float4> inner_flux() const { return inner_flux_.read(device_); }
 
   private:
     void build_kernels();
@@ -127,6 +128,7 @@ class Renderer {
     Buffer<float> eye_spectra_;
     Buffer<std::uint32_t> largest_radius_;
     Buffer<cl_float4> gathered_flux_;
+    Buffer<cl_float4> inner_flux_; ///< of photons within the radius over √2, for error estimates
     Buffer<FilmPixel> film_;
     Buffer<std::uint32_t> non_finite_;
 
