@@ -243,6 +243,14 @@ typedef struct FilmPixel {
     tristim_uint ray_carries;  // how often these ran over: camera rays in the low 16 bits, shadow rays in the high ones
 } FilmPixel;
 
+// What errors are estimated from: planes of one float for each pixel. Three (X, Y, Z) for each group of each level, then the sums of
+// the bias and of its square. A level's batches are 4 times as long as those of the one before; the first one's hold 4 passes.
+#define ERROR_LEVELS 6
+#define ERROR_GROUP_BITS 2
+#define ERROR_GROUPS (1 << ERROR_GROUP_BITS)
+#define ERROR_BIAS_PLANE (3 * ERROR_LEVELS * ERROR_GROUPS)
+#define ERROR_PLANES (ERROR_BIAS_PLANE + 6)
+
 // Counts of values that were not finite, by the kernel that left them out: two uints each, the low one first. The film counts by
 // pixel. Behind them, of work-items whose loops the device ended early.
 #define NON_FINITE_EYE 0

@@ -4,6 +4,7 @@
 #include "base/stopwatch.h"
 #include "opencl/errors.h"
 #include "opencl/program_cache.h"
+#include "render/error_estimate.h"
 #include "render/kernel_macros.h"
 #include "render/pilot.h"
 #include "render/radius_schedule.h"
@@ -65,6 +66,7 @@ Renderer::Renderer(std::shared_ptr<const DeviceScene> scene, const RenderOptions
     largest_radius_ = Buffer<std::uint32_t>(device, "largest radius", 1);
     gathered_flux_ = Buffer<cl_float4>(device, "gathered flux", pixels);
     inner_flux_ = Buffer<cl_float4>(device, "flux gathered within radius/sqrt(2)", options.error_estimate ? pixels : 0);
+    error_sums_ = Buffer<float>(device, "error sums", options.error_estimate ? ERROR_PLANES * pixels : 0);
     film_ = Buffer<FilmPixel>(device, "film", pixels);
     non_finite_ = Buffer<std::uint32_t>(device, "counts of values that are not finite", 2 * NON_FINITE_COUNTS);
     largest_floor_ = largest_radius_floor(flat.constants);
@@ -100,13 +102,15 @@ void Renderer::build_kernels() {
     film_clear_ = ::cl::Kernel(film, "film_clear");
     film_largest_radius_ = ::cl::Kernel(film, "film_largest_radius");
     film_add_ = ::cl::Kernel(film, "film_add");
+    if (options_.error_estimate)
+        error_add_ = kernel("error_sums.cl", "error_add");
 }
 
 void Renderer::keep_programs() const {
     if (is_cheap_to_keep(device_.info))
         return;
-    for (const ::cl::Kernel* kernel :
-         {&wavelengths_, &film_tables_, &eye_pass_, &photon_pass_, &sorter_.kernel(), &gather_, &film_add_}) {
+    for (const ::cl::Kernel* kernel : {&wavelengths_, &film_tables_, &eye_pass_, &photon_pass_, &sorter_.kernel(),
+                                       &gather_, &film_add_, &error_add_}) {
         if ((*kernel)() != nullptr)
             keep_program(device_, kernel->getInfo<CL_KERNEL_PROGRAM>());
     }
@@ -135,6 +139,8 @@ void Renderer::allocate_photons(std::uint32_t capacity_per_item) {
     add(pass_table_);
     statistics_.pixel_bytes = add(radius0_) + add(visible_points_) + add(visible_surfaces_) + add(eye_spectra_) +
                               add(gathered_flux_) + add(film_);
+    if (options_.error_estimate)
+        statistics_.pixel_bytes += add(inner_flux_) + add(error_sums_);
     statistics_.bytes_per_pixel = static_cast<double>(statistics_.pixel_bytes) / options_.region.pixels();
     statistics_.photon_bytes = add(photons_) + add(photon_surfaces_) + add(photon_spectra_);
     for (const auto& size : sorter_.sizes()) {
@@ -171,6 +177,8 @@ void Renderer::run_pilot() {
     sort_photons();
     gather_photons();
     add_to_film();
+    if (options_.error_estimate)
+        add_to_error_sums(seeds.pass);
     collect_times();
     const auto& steps = statistics_.step_seconds;
     statistics_.pilot_seconds += std::accumulate(steps.begin(), steps.end(), 0.0);
@@ -198,6 +206,8 @@ void Renderer::clear_film() {
     film_clear_.setArg(0, radius0_.cl());
     film_clear_.setArg(1, film_.cl());
     enqueue(Step::Film, film_clear_, film_.size(), device_.tuning.pixel_group);
+    if (options_.error_estimate)
+        error_sums_.fill(device_, 0.0F);
 }
 
 void Renderer::render_pass(const PassSeeds& seeds) {
@@ -211,6 +221,8 @@ void Renderer::render_pass(const PassSeeds& seeds) {
     gather_photons();
     check_loops();
     add_to_film();
+    if (options_.error_estimate)
+        add_to_error_sums(seeds.pass);
     collect_times();
     ++statistics_.passes;
     statistics_.photons_emitted += static_cast<std::uint64_t>(options_.photons_per_pass);
@@ -329,6 +341,16 @@ void Renderer::add_to_film() {
     enqueue(Step::Film, film_add_, film_.size(), device_.tuning.pixel_group);
 }
 
+void Renderer::add_to_error_sums(std::uint32_t pass) {
+    cl_uint argument = 0;
+    for (const ::cl::Buffer* buffer : {&visible_points_.cl(), &gathered_flux_.cl(), &inner_flux_.cl()})
+        error_add_.setArg(argument++, *buffer);
+    error_add_.setArg(argument++, error_groups(pass));
+    error_add_.setArg(argument++, static_cast<cl_uint>(visible_points_.size()));
+    error_add_.setArg(argument++, error_sums_.cl());
+    enqueue(Step::Film, error_add_, visible_points_.size(), device_.tuning.pixel_group);
+}
+
 void Renderer::enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group) {
     const std::size_t whole = items / group * group;
     const auto launch = [&](std::size_t offset, std::size_t count, std::size_t size) {
@@ -371,6 +393,7 @@ void Renderer::restore(const std::vector<FilmPixel>& film, std::uint64_t passes,
 RenderSums Renderer::sums() const {
     RenderSums sums;
     sums.film = film_.read(device_);
+    sums.error = error_sums();
     for (const FilmPixel& pixel : sums.film) {
         sums.rays.camera += camera_rays(pixel);
         sums.rays.shadow += shadow_rays(pixel);

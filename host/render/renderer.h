@@ -56,6 +56,12 @@ class Renderer {
     /// The running sums, which another renderer of the same scene, options and device goes on from.
     std::vector<FilmPixel> film_pixels() const { return film_.read(device_); }
 
+    /// The sums of kernels/error_sums.cl, and going on from them; none unless options().error_estimate.
+    std::vector<float> error_sums() const {
+        return error_sums_.read(device_, options_.error_estimate ? error_sums_.size() : 0);
+    }
+    void restore_error_sums(const std::vector<float>& sums) { error_sums_.write(device_, sums); }
+
     /// Goes on from the sums after `passes` passes that took `seconds`, as if this renderer had rendered them.
     void restore(const std::vector<FilmPixel>& film, std::uint64_t passes, double seconds);
 
@@ -100,6 +106,7 @@ class Renderer {
     /// Throws Error if the device ended a work-item's loops early (kernels/loops.h).
     void check_loops() const;
     void add_to_film();
+    void add_to_error_sums(std::uint32_t pass);
 
     void enqueue(Step step, const ::cl::Kernel& kernel, std::size_t items, std::size_t group);
     PhotonSorter::Enqueue enqueue_grid();
@@ -128,7 +135,8 @@ class Renderer {
     Buffer<float> eye_spectra_;
     Buffer<std::uint32_t> largest_radius_;
     Buffer<cl_float4> gathered_flux_;
-    Buffer<cl_float4> inner_flux_; ///< of photons within the radius over √2, for error estimates
+    Buffer<cl_float4> inner_flux_; ///< for error estimates: of photons within the radius over √2
+    Buffer<float> error_sums_;     ///< for error estimates
     Buffer<FilmPixel> film_;
     Buffer<std::uint32_t> non_finite_;
 
@@ -150,6 +158,7 @@ class Renderer {
     ::cl::Kernel film_clear_;
     ::cl::Kernel film_largest_radius_;
     ::cl::Kernel film_add_;
+    ::cl::Kernel error_add_;
 };
 
 } // namespace tristim

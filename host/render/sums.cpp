@@ -1,6 +1,7 @@
 #include "render/sums.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace tristim {
 
@@ -13,6 +14,10 @@ void add(RenderSums& sums, const RenderSums& more) {
     }
     sums.passes.add(more.passes);
     add_film(sums.film, more.film);
+    if (sums.error.size() == more.error.size())
+        std::transform(sums.error.begin(), sums.error.end(), more.error.begin(), sums.error.begin(), std::plus<>());
+    else
+        sums.error.clear();
     sums.photons_stored += more.photons_stored;
     sums.rays.camera += more.rays.camera;
     sums.rays.shadow += more.rays.shadow;

@@ -12,14 +12,15 @@ namespace tristim {
 /// What passes add up to, on whatever devices.
 struct RenderSums {
     std::vector<FilmPixel> film;
-    PassRanges passes; ///< that the film holds
+    std::vector<float> error; ///< ERROR_PLANES planes of as many floats (shared_types.h); empty if not asked for
+    PassRanges passes;        ///< that the film holds
     RayTotals rays;
     NonFiniteCounts non_finite;
     std::uint64_t photons_stored = 0;
 };
 
-/// Adds the passes of another render of the same pixels, see add_film; sums without a film are none. Throws Error if
-/// some are in both.
+/// Adds the passes of another render of the same pixels, see add_film; sums without a film are none. What errors are
+/// estimated from stays only if both have it. Throws Error if some passes are in both.
 void add(RenderSums& sums, const RenderSums& more);
 
 /// Whether every pixel holds as many passes; not so if a device failed while it added one.

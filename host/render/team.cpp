@@ -93,8 +93,9 @@ void Team::resume(const RenderSums& sums, const std::vector<float>& radii) {
     // On a device alone, passes go on being added as if there had been no pause.
     Member& member = members_[first_];
     member.renderer->restore(sums.film, 0, 0.0);
+    member.renderer->restore_error_sums(sums.error);
     member.saved = std::make_shared<RenderSums>(sums);
-    member.earlier = {{}, sums.passes, sums.rays, sums.non_finite, sums.photons_stored};
+    member.earlier = {{}, {}, sums.passes, sums.rays, sums.non_finite, sums.photons_stored};
     member.earlier.rays.camera = member.earlier.rays.shadow = member.earlier.non_finite.film =
         0; // the film counts them
 }
