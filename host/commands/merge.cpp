@@ -50,10 +50,13 @@ void merge(const MergeCommand& command) {
     if (!command.checkpoint.empty())
         write_checkpoint(command.checkpoint, sum);
     const FilmImage film = develop_film(sum.sums.film, sum.width, sum.height, sum.region);
-    write(command.image, xyz_image(film), metadata_of(sum));
+    const ErrorEstimate estimate = estimate_error(sum.sums, sum.region.width);
+    if (wants_error_estimate(command.image) && !estimate.complete)
+        fail("--aov error and bias need checkpoints of renders that had --aov or --error-target too");
+    write(command.image, xyz_image(film), metadata_of(sum), estimate, sum.sums.film);
     if (!command.quiet)
-        fmt::print(stderr, "{} passes ({}); {} non-finite values\n", sum.sums.passes.count(), sum.sums.passes.text(),
-                   sum.sums.non_finite.total());
+        fmt::print(stderr, "{} passes ({}); {}; {} non-finite values\n", sum.sums.passes.count(),
+                   sum.sums.passes.text(), describe(estimate), sum.sums.non_finite.total());
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "commands/error_watch.h"
 #include "commands/image_output.h"
 #include "commands/interrupt.h"
 #include "commands/parse.h"
@@ -14,6 +15,7 @@
 #include "render/stats_json.h"
 #include "render/team.h"
 
+#include <cmath>
 #include <memory>
 
 namespace tristim {
@@ -28,6 +30,7 @@ struct RenderCommand {
     std::optional<std::uint64_t> passes;
     std::optional<double> seconds;
     std::string pass_range;
+    std::optional<double> error_target;
     std::string stats;
     bool quiet = false;
 };
@@ -48,24 +51,28 @@ RenderBudget limits(const RenderCommand& command, const Scene& scene) {
             fail("--pass-range {} is not one range", command.pass_range);
         return {range.count(), command.seconds, range.ranges().front().begin};
     }
+    if (!command.passes && !command.seconds && command.error_target)
+        return {};
     if (!command.passes && !command.seconds)
         return {scene.settings.passes ? static_cast<std::uint64_t>(*scene.settings.passes) : default_passes, {}};
     return {command.passes, command.seconds};
 }
 
-/// Renders passes until a limit is reached, the user interrupts or no device is left.
+/// Renders passes until a limit or the error target is reached, the user interrupts or no device is left.
 RenderOutcome render_passes(Team& team, const RenderOptions& options, const RenderBudget& limits,
-                            RenderCheckpoint& checkpoint, bool quiet) {
+                            const RenderCommand& command, RenderCheckpoint& checkpoint) {
     const std::uint64_t earlier = checkpoint.resumed_passes().count();
     RenderBudget left = limits;
     if (limits.passes)
         left.passes = passes_to_do(limits, checkpoint.resumed_passes()).count();
-    Progress progress(left, options.photons_per_pass, quiet, earlier);
+    Progress progress(left, options.photons_per_pass, command.quiet, earlier);
+    ErrorWatch watch(command.error_target, options.region.width);
+    const Stopwatch stopwatch;
     checkpoint.begin(team);
     team.render(limits, [&](std::uint64_t done) {
-        progress.update(done);
+        progress.update(done, watch.text(), watch.remaining(earlier + done, done, stopwatch.seconds()));
         checkpoint.update(team);
-        return !interrupted();
+        return !watch.reached(team, earlier + done) && !interrupted();
     });
     RenderOutcome outcome = team.outcome();
     progress.finish(outcome.statistics.passes - earlier);
@@ -118,6 +125,9 @@ void run(RenderCommand& command) {
     const Scene scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
     const double load_seconds = loading.seconds();
     RenderOptions options = resolve_options(command.arguments, scene);
+    if (command.error_target && !(*command.error_target > 0.0 && std::isfinite(*command.error_target)))
+        fail("--error-target must be a positive number");
+    options.error_estimate = command.error_target || wants_error_estimate(command.image);
     const RenderBudget stop = limits(command, scene);
     if (command.image.outfiles.empty())
         command.image.outfiles.push_back(scene.settings.filename);
@@ -129,6 +139,7 @@ void run(RenderCommand& command) {
         print_notes(scene);
 
     checkpoint.choose_method(options);
+    checkpoint.follow_error_sums(options);
     if (!options.auto_method)
         checkpoint.check(scene, options);
     catch_interrupts();
@@ -140,7 +151,7 @@ void run(RenderCommand& command) {
         checkpoint.check(scene, options);
     }
     Team team(scene, options, devices, device_scene);
-    const RenderOutcome outcome = render_passes(team, options, stop, checkpoint, command.quiet);
+    const RenderOutcome outcome = render_passes(team, options, stop, command, checkpoint);
     const RenderStatistics& statistics = outcome.statistics;
     const bool complete = report_failures(outcome, stop);
     if (statistics.passes == 0)
@@ -149,12 +160,14 @@ void run(RenderCommand& command) {
 
     const bool saved = checkpoint.save(outcome.sums);
     const FilmImage film = developed(outcome.sums, options);
+    const ErrorEstimate estimate = estimate_error(outcome.sums, options.region.width);
     write(
         command.image, xyz_image(film),
         with_passes(image_metadata(options, statistics, infos(devices), command.arguments.scene, film.rejected_samples),
-                    outcome.sums.passes));
+                    outcome.sums.passes),
+        estimate, outcome.sums.film);
     if (!command.stats.empty()) {
-        nlohmann::ordered_json json = stats_json(options, outcome, command.arguments.scene, load_seconds);
+        nlohmann::ordered_json json = stats_json(options, outcome, command.arguments.scene, load_seconds, estimate);
         if (checkpoint.is_wanted())
             json["checkpoints"] = checkpoint.stats_json();
         replace_file(command.stats, json.dump(2) + "\n");
@@ -166,10 +179,11 @@ void run(RenderCommand& command) {
     if (checkpoint.is_wanted() && saved)
         written.push_back(checkpoint.path());
     if (!command.quiet)
-        fmt::print(stderr, "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {} non-finite values; wrote {}\n",
+        fmt::print(stderr,
+                   "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {}; {} non-finite values; wrote {}\n",
                    interrupted() ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
-                   statistics.render_seconds, statistics.build_kernels_seconds, film.rejected_samples,
-                   fmt::join(written, ", "));
+                   statistics.render_seconds, statistics.build_kernels_seconds, describe(estimate),
+                   film.rejected_samples, fmt::join(written, ", "));
     if (!interrupted())
         team.keep_programs();
     if (!complete || !saved)
@@ -199,6 +213,12 @@ void add_render_command(CLI::App& app) {
         ->excludes(passes);
     add_checkpoint_options(*sub, command->checkpoint);
     sub->add_option("--time", command->seconds, "Seconds to render; with --passes, the first reached ends the render");
+    sub->add_option(
+           "--error-target", command->error_target,
+           "Render until the estimated RMSE falls under X, or to the limit by --passes, --time or --pass-range, "
+           "whichever is first. The RMSE is over pixels and X, Y, Z, as `tristim compare` has it, divided by the "
+           "mean Y of the image; noise and the search radius's bias count")
+        ->type_name("X");
     sub->add_option("--stats", command->stats, "Write times, rays and memory as JSON")->type_name("FILE.json");
     sub->add_flag("--quiet", command->quiet, "No progress, notes or summary; errors still show");
     sub->callback([command] { run(*command); });

@@ -74,6 +74,16 @@ void RenderCheckpoint::choose_method(RenderOptions& options) const {
     options.auto_method = false;
 }
 
+void RenderCheckpoint::follow_error_sums(RenderOptions& options) const {
+    if (resume_path_.empty())
+        return;
+    if (options.error_estimate && state_.sums.error.empty())
+        fail(
+            "cannot resume \"{}\" with error estimates: it was begun without --aov error, --aov bias or --error-target",
+            resume_path_);
+    options.error_estimate = !state_.sums.error.empty();
+}
+
 void RenderCheckpoint::check(const Scene& scene, const RenderOptions& options) {
     if (path_.empty())
         return;

@@ -34,6 +34,9 @@ class RenderCheckpoint {
     /// A resumed render's method where the options say auto.
     void choose_method(RenderOptions& options) const;
 
+    /// Error estimates go on if the resumed render has what they need; throws Error if they are wanted and it has not.
+    void follow_error_sums(RenderOptions& options) const;
+
     /// Throws Error, naming what differs, unless a resumed render is one of this scene with these options (whose
     /// method has been chosen).
     void check(const Scene& scene, const RenderOptions& options);

@@ -69,8 +69,8 @@ void check_writable(const std::string& path) {
 }
 
 void write_exr(const std::string& path, const XyzImage& image, ColourSpace space, const ImageMetadata& metadata,
-               const ImageLayers& layers) {
-    const std::size_t channels = 3 * (1 + layers.size());
+               const ImageLayers& layers, const ImagePlanes& planes) {
+    const std::size_t channels = 3 * (1 + layers.size()) + planes.size();
     OIIO::ImageSpec spec(image.region.width, image.region.height, static_cast<int>(channels), OIIO::TypeDesc::FLOAT);
     spec.x = image.region.x;
     spec.y = image.region.y;
@@ -85,6 +85,8 @@ void write_exr(const std::string& path, const XyzImage& image, ColourSpace space
     }
     for (const auto& [name, values] : layers)
         spec.channelnames.insert(spec.channelnames.end(), {name + ".X", name + ".Y", name + ".Z"});
+    for (const auto& [name, values] : planes)
+        spec.channelnames.push_back(name);
     for (const auto& [name, value] : metadata)
         std::visit([&](const auto& v) { set_attribute(spec, "tristim:" + name, v); }, value);
     const auto colours = space == ColourSpace::Srgb ? linear_rgb(image) : image.xyz;
@@ -94,6 +96,8 @@ void write_exr(const std::string& path, const XyzImage& image, ColourSpace space
         pixels.insert(pixels.end(), colours[i].begin(), colours[i].end());
         for (const auto& [name, values] : layers)
             pixels.insert(pixels.end(), values[i].begin(), values[i].end());
+        for (const auto& [name, values] : planes)
+            pixels.push_back(values[i]);
     }
     replace_file(path, encode("exr", spec, OIIO::TypeDesc::FLOAT, pixels.data()));
 }

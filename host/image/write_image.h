@@ -25,6 +25,9 @@ using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::strin
 /// More values per pixel than the colour: layer NAME has channels NAME.X, NAME.Y and NAME.Z.
 using ImageLayers = std::vector<std::pair<std::string, std::vector<std::array<float, 3>>>>;
 
+/// More single values per pixel: one channel each, of that name.
+using ImagePlanes = std::vector<std::pair<std::string, std::vector<float>>>;
+
 /// Throws Error if an image cannot be written at `path`: its extension is neither .exr nor .png, its folder is missing
 /// or not writable, or something other than a writable file stands there. Changes nothing.
 void check_writable(const std::string& path);
@@ -33,7 +36,7 @@ void check_writable(const std::string& path);
 /// OpenEXR has no 64-bit integers: an integer beyond 32 bits becomes a string of its digits. The file is replaced as a
 /// whole or not at all. Throws Error.
 void write_exr(const std::string& path, const XyzImage& image, ColourSpace space, const ImageMetadata& metadata,
-               const ImageLayers& layers = {});
+               const ImageLayers& layers = {}, const ImagePlanes& planes = {});
 
 /// Writes the image's region in 8-bit sRGB. The file is replaced as a whole or not at all. Throws Error.
 void write_png(const std::string& path, const XyzImage& image, const ToneMapping& tone_mapping);

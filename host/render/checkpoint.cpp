@@ -76,11 +76,18 @@ void add_planes(std::vector<Plane>& planes, std::vector<FilmPixel>& film) {
     static_assert(sizeof(FilmPixel) == 24 * word, "a new member of FilmPixel needs a plane");
 }
 
+std::string error_plane_name(std::size_t plane) {
+    return fmt::format("error{}", plane);
+}
+
 /// All channels of a checkpoint, whose vectors must have their sizes.
 std::vector<Plane> planes_of(Checkpoint& checkpoint) {
     std::vector<Plane> planes;
     add_planes(planes, checkpoint.sums.film);
     planes.push_back({"initial_radius", false, bytes_of(checkpoint.initial_radii), word});
+    const std::size_t pixels = checkpoint.sums.film.size();
+    for (std::size_t p = 0; p * pixels < checkpoint.sums.error.size(); ++p)
+        planes.push_back({error_plane_name(p), false, bytes_of(checkpoint.sums.error) + p * pixels * word, word});
     return planes;
 }
 
@@ -254,6 +261,8 @@ Checkpoint read_checkpoint(const std::string& path) {
     const auto pixels = static_cast<std::size_t>(c.region.pixels());
     c.sums.film.resize(pixels);
     c.initial_radii.resize(pixels);
+    if (spec.channelindex(error_plane_name(0)) >= 0)
+        c.sums.error.resize(ERROR_PLANES * pixels);
     const std::size_t stride = spec.channelnames.size() * word;
     std::vector<std::byte> values(pixels * stride);
     if (spec.pixel_bytes(true) != stride ||

@@ -21,9 +21,9 @@ struct Checkpoint {
     double seconds = 0.0; ///< of rendering so far
 };
 
-/// Writes one EXR file: each member of FilmPixel and the initial radius as a channel (32-bit floats and unsigned
-/// integers, so that every bit is kept), the rest in the header; behind them a checksum over the file. It is replaced
-/// as a whole or not at all. Throws Error.
+/// Writes one EXR file: each member of FilmPixel, the initial radius and the planes of error sums as a channel (32-bit
+/// floats and unsigned integers, so that every bit is kept), the rest in the header; behind them a checksum over the
+/// file. It is replaced as a whole or not at all. Throws Error.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
 
 /// Throws Error if the file is missing, is no checkpoint, is not what write_checkpoint wrote bit for bit, or was

@@ -208,7 +208,7 @@ Plane noise_variance(const RenderSums& sums, int width, std::size_t channel) {
     return variance;
 }
 
-/// The bias of a channel and the variance of that estimate, over windows.
+/// The bias of a channel and the variance of that estimate.
 struct BiasPlanes {
     Plane mean, variance;
 };
@@ -233,6 +233,25 @@ double mean_of(const Plane& plane) {
     return sum / static_cast<double>(plane.size());
 }
 
+/// The mean of squares from which noise was taken off, less what the noise left: by its spread over tiles of the image,
+/// among which little noise is shared, as far as it is smaller than itself; else nothing.
+double significant_mean(const Plane& plane, int width) {
+    const int tile = 2 * window_reach + 1;
+    const int tiles = (width + tile - 1) / tile;
+    const int height = static_cast<int>(plane.size()) / width;
+    Plane sums(static_cast<std::size_t>(tiles * ((height + tile - 1) / tile)));
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+        sums[static_cast<std::size_t>(y / tile * tiles + x / tile)] += plane[i];
+    }
+    double sum = 0.0, squares = 0.0;
+    for (const double part : sums) {
+        sum += part;
+        squares += part * part;
+    }
+    return sum > 0.0 ? sum / static_cast<double>(plane.size()) * std::max(1.0 - squares / (sum * sum), 0.0) : 0.0;
+}
+
 } // namespace
 
 std::uint32_t error_groups(std::uint32_t pass) {
@@ -248,7 +267,8 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
     estimate.complete = !sums.error.empty();
     estimate.pixel_noise.resize(pixels);
     estimate.pixel_bias.resize(estimate.complete ? pixels : 0);
-    double noise = 0.0, bias = 0.0, mean_y = 0.0;
+    double noise = 0.0, mean_y = 0.0;
+    Plane squared_bias(pixels);
     for (std::size_t c = 0; c < 3; ++c) {
         const Plane variance = noise_variance(sums, width, c);
         noise += mean_of(variance) / 3.0;
@@ -260,7 +280,8 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
         Plane squares(pixels);
         for (std::size_t i = 0; i < pixels; ++i)
             squares[i] = planes.mean[i] * planes.mean[i];
-        bias += (mean_of(squares) - mean_of(planes.variance)) / 3.0;
+        for (std::size_t i = 0; i < pixels; ++i)
+            squared_bias[i] += (squares[i] - planes.variance[i]) / 3.0;
         const Plane square = window_means(squares, width), error = window_means(planes.variance, width);
         for (std::size_t i = 0; i < pixels; ++i) {
             const double share = square[i] > 0.0 ? std::max(1.0 - error[i] / square[i], 0.0) : 0.0;
@@ -271,7 +292,7 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
         mean_y += sample_sums(pixel)[1] / std::max(1.0, static_cast<double>(pixel.samples));
     mean_y /= static_cast<double>(pixels);
     estimate.noise = std::sqrt(noise) / mean_y;
-    estimate.bias = std::sqrt(std::max(bias, 0.0)) / mean_y;
+    estimate.bias = std::sqrt(significant_mean(squared_bias, width)) / mean_y;
     estimate.rmse = std::hypot(estimate.noise, estimate.bias);
     return estimate;
 }

@@ -36,7 +36,8 @@ std::uint32_t error_groups(std::uint32_t pass);
 /// Bias. To first order the density within a radius r is off by r² times a Laplacian (Hachisuka, Jarosz & Jensen 2010,
 /// "A Progressive Error Estimation Framework for Photon Density Estimation", equation 10; Knaus & Zwicker 2011, section
 /// 4), so that twice the difference to the density within r/√2 estimates it without bias. What the noise of that
-/// estimate adds to its square is taken off.
+/// estimate adds to its square is taken off, and a root mean square that is not clearly above the noise that then
+/// remains counts for less or nothing.
 ///
 /// `width` is that of the region in pixels. Without sums.error only the upper limit of the noise is told.
 ErrorEstimate estimate_error(const RenderSums& sums, int width);

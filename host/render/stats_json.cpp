@@ -3,7 +3,7 @@
 namespace tristim {
 
 nlohmann::ordered_json stats_json(const RenderOptions& options, const RenderOutcome& outcome, const std::string& scene,
-                                  double load_seconds) {
+                                  double load_seconds, const ErrorEstimate& estimate) {
     const RenderStatistics& statistics = outcome.statistics;
     const RayTotals& rays = outcome.sums.rays;
 
@@ -41,6 +41,10 @@ nlohmann::ordered_json stats_json(const RenderOptions& options, const RenderOutc
     json["bytes_per_photon"] = statistics.bytes_per_photon;
     for (const auto& [name, bytes] : statistics.buffer_bytes)
         json["bytes"][name] = bytes;
+    if (estimate.complete)
+        json["estimated_error"] = {{"rmse", estimate.rmse}, {"noise", estimate.noise}, {"bias", estimate.bias}};
+    else
+        json["noise_at_most"] = estimate.noise;
     const NonFiniteCounts& counts = outcome.sums.non_finite;
     json["non_finite_samples"] = counts.total();
     json["non_finite"] = {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/error_estimate.h"
 #include "render/team.h"
 
 #include <nlohmann/json.hpp>
@@ -10,6 +11,6 @@ namespace tristim {
 
 /// What `render --stats` writes. `load_seconds` is the time that reading the scene took.
 nlohmann::ordered_json stats_json(const RenderOptions& options, const RenderOutcome& outcome, const std::string& scene,
-                                  double load_seconds);
+                                  double load_seconds, const ErrorEstimate& estimate);
 
 } // namespace tristim
