@@ -186,6 +186,8 @@ class Extrapolation {
 /// The variance of each pixel's mean, in one channel.
 Plane noise_variance(const RenderSums& sums, int width, std::size_t channel) {
     const auto passes = static_cast<double>(sums.passes.count());
+    if (passes < 2.0)
+        return Plane(sums.film.size(), std::numeric_limits<double>::infinity());
     std::vector<Spread> spreads{{1.0, window_means(pass_spread(sums, channel), width)}};
     for (int level = 0; !sums.error.empty() && level < ERROR_LEVELS; ++level) {
         const Grouping grouping = group_passes(sums.passes, level);
@@ -291,8 +293,11 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
     for (const FilmPixel& pixel : sums.film)
         mean_y += sample_sums(pixel)[1] / std::max(1.0, static_cast<double>(pixel.samples));
     mean_y /= static_cast<double>(pixels);
-    estimate.noise = std::sqrt(noise) / mean_y;
-    estimate.bias = std::sqrt(significant_mean(squared_bias, width)) / mean_y;
+    const auto relative = [mean_y](double mean_square) {
+        return mean_square > 0.0 ? std::sqrt(mean_square) / mean_y : 0.0;
+    };
+    estimate.noise = relative(noise);
+    estimate.bias = relative(significant_mean(squared_bias, width));
     estimate.rmse = std::hypot(estimate.noise, estimate.bias);
     return estimate;
 }

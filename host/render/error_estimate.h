@@ -13,7 +13,7 @@ namespace tristim {
 struct ErrorEstimate {
     /// Root mean squares over pixels and X, Y, Z, as `tristim compare` has them, over the mean Y of the image.
     double rmse = 0.0;  ///< of both
-    double noise = 0.0; ///< standard error of the mean over the passes
+    double noise = 0.0; ///< standard error of the mean over the passes; infinite after one
     double bias = 0.0;  ///< what the search radius blurs
 
     bool complete = false; ///< false: there is no estimate of bias, and `noise` is from the plain spread of the passes,
