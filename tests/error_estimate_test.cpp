@@ -275,7 +275,8 @@ TEST(ErrorCommand, WritesChannelsHeaderAndSummary) {
     const ChildResult with = render("with.exr", {"--passes", "32", "--aov", "error,bias,count"});
     ASSERT_EQ(with.exit_code, 0) << with.standard_error;
     EXPECT_NE(with.standard_error.find("; estimated RMSE "), std::string::npos) << with.standard_error;
-    const ChildResult without = render("without.exr", {"--passes", "32"});
+    const ChildResult without =
+        render("without.exr", {"--passes", "32", "--checkpoint", folder.path("without-sums.exr")});
     EXPECT_NE(without.standard_error.find("; noise at most "), std::string::npos) << without.standard_error;
     const auto a = open_exr(folder.path("with.exr")), b = open_exr(folder.path("without.exr"));
     ASSERT_TRUE(a && b);
@@ -291,12 +292,25 @@ TEST(ErrorCommand, WritesChannelsHeaderAndSummary) {
         mean_y += y / (16.0 * 12);
     // Float rounding of the pixels' errors.
     EXPECT_NEAR(a->spec().get_float_attribute("tristim:estimated_noise"), std::sqrt(noise) / mean_y, 1e-4);
+    const std::string sums = folder.path("sums.exr");
+    EXPECT_EQ(render("half.exr", {"--passes", "16", "--aov", "bias", "--checkpoint", sums}).exit_code, 0);
+    EXPECT_EQ(render("resumed.exr", {"--passes", "32", "--aov", "error,bias", "--resume", sums}).exit_code, 0);
+    const auto resumed = open_exr(folder.path("resumed.exr"));
+    ASSERT_TRUE(resumed);
+    for (const std::string name : {"Y", "error.X", "error.Y", "bias.Z"})
+        EXPECT_EQ(channel(*a, name), channel(*resumed, name)) << name << ": error sums go on too";
+    const ChildResult refused =
+        render("no.exr", {"--passes", "40", "--aov", "error", "--resume", folder.path("without-sums.exr")});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.standard_error.find("it was begun without --aov error"), std::string::npos)
+        << refused.standard_error;
     EXPECT_EQ(channel(*a, "count"), std::vector<float>(16 * 12, 32.0F));
 
-    // Two passes in five tell too little; far more than the target needs are allowed.
+    // As few passes as there are estimates of, or not many more.
     const double target = 1.5 * a->spec().get_float_attribute("tristim:estimated_rmse");
     const ChildResult until = render("until.exr", {"--passes", "100000", "--error-target", fmt::format("{}", target)});
     ASSERT_EQ(until.exit_code, 0) << until.standard_error;
+    EXPECT_NE(until.standard_error.find("under the target "), std::string::npos) << until.standard_error;
     const auto c = open_exr(folder.path("until.exr"));
     ASSERT_TRUE(c);
     EXPECT_GE(c->spec().get_int_attribute("tristim:passes"), 16);

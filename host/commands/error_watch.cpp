@@ -8,7 +8,8 @@ namespace {
 
 /// With fewer there are not four batches of the first level, and nothing to tell noise by but the plain spread.
 constexpr std::uint64_t fewest_passes = 16;
-constexpr double seconds_per_estimating_second = 100.0;
+/// Reading the sums from the devices costs about as much again.
+constexpr double seconds_per_estimating_second = 200.0;
 
 } // namespace
 

@@ -104,6 +104,12 @@ std::string describe(const std::vector<DeviceShare>& shares) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// The estimate and, if there is a target, whether it is reached.
+std::string describe(const ErrorEstimate& estimate, std::optional<double> target) {
+    return describe(estimate) +
+           (target ? fmt::format(", {}under the target {:.2g}", estimate.rmse < *target ? "" : "not ", *target) : "");
+}
+
 /// --method auto: fills in the method, and says which and why.
 void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const RenderBudget& budget,
             bool quiet, RenderOptions& options) {
@@ -182,8 +188,8 @@ void run(RenderCommand& command) {
         fmt::print(stderr,
                    "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {}; {} non-finite values; wrote {}\n",
                    interrupted() ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
-                   statistics.render_seconds, statistics.build_kernels_seconds, describe(estimate),
-                   film.rejected_samples, fmt::join(written, ", "));
+                   statistics.render_seconds, statistics.build_kernels_seconds,
+                   describe(estimate, command.error_target), film.rejected_samples, fmt::join(written, ", "));
     if (!interrupted())
         team.keep_programs();
     if (!complete || !saved)

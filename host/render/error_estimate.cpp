@@ -131,6 +131,17 @@ Plane pass_spread(const RenderSums& sums, std::size_t channel) {
     return plane;
 }
 
+/// The variance that the mean would have if passes were independent; infinite after one.
+Plane plain_variance(const RenderSums& sums, std::size_t channel) {
+    const auto passes = static_cast<double>(sums.passes.count());
+    if (passes < 2.0)
+        return Plane(sums.film.size(), std::numeric_limits<double>::infinity());
+    Plane plane = pass_spread(sums, channel);
+    for (double& value : plane)
+        value /= passes - 1.0;
+    return plane;
+}
+
 /// v(n) = c n^-a from v(B) − v(n) for some B. Least squares of logarithms over a, with a weak belief in what scenes
 /// showed: a = 1.3 ± 0.4.
 class Extrapolation {
@@ -187,9 +198,9 @@ class Extrapolation {
 Plane noise_variance(const RenderSums& sums, int width, std::size_t channel) {
     const auto passes = static_cast<double>(sums.passes.count());
     if (passes < 2.0)
-        return Plane(sums.film.size(), std::numeric_limits<double>::infinity());
+        return plain_variance(sums, channel);
     std::vector<Spread> spreads{{1.0, window_means(pass_spread(sums, channel), width)}};
-    for (int level = 0; !sums.error.empty() && level < ERROR_LEVELS; ++level) {
+    for (int level = 0; level < ERROR_LEVELS; ++level) {
         const Grouping grouping = group_passes(sums.passes, level);
         if (grouping.batch() * least_batches <= passes && grouping.batch() > spreads.back().batch)
             spreads.push_back({grouping.batch(), window_means(group_spread(sums, grouping, level, channel), width)});
@@ -267,17 +278,19 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
     ErrorEstimate estimate;
     const std::size_t pixels = sums.film.size();
     estimate.complete = !sums.error.empty();
-    estimate.pixel_noise.resize(pixels);
+    estimate.pixel_noise.resize(estimate.complete ? pixels : 0);
     estimate.pixel_bias.resize(estimate.complete ? pixels : 0);
     double noise = 0.0, mean_y = 0.0;
     Plane squared_bias(pixels);
     for (std::size_t c = 0; c < 3; ++c) {
+        if (!estimate.complete) {
+            noise += mean_of(plain_variance(sums, c)) / 3.0;
+            continue;
+        }
         const Plane variance = noise_variance(sums, width, c);
         noise += mean_of(variance) / 3.0;
         for (std::size_t i = 0; i < pixels; ++i)
             estimate.pixel_noise[i][c] = static_cast<float>(std::sqrt(variance[i]));
-        if (!estimate.complete)
-            continue;
         const BiasPlanes planes = bias_planes(sums, c);
         Plane squares(pixels);
         for (std::size_t i = 0; i < pixels; ++i)
@@ -294,7 +307,7 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
         mean_y += sample_sums(pixel)[1] / std::max(1.0, static_cast<double>(pixel.samples));
     mean_y /= static_cast<double>(pixels);
     const auto relative = [mean_y](double mean_square) {
-        return mean_square > 0.0 ? std::sqrt(mean_square) / mean_y : 0.0;
+        return mean_square > 0.0 ? std::sqrt(mean_square) / mean_y : 0.0; // also of a black image
     };
     estimate.noise = relative(noise);
     estimate.bias = relative(significant_mean(squared_bias, width));
@@ -303,6 +316,8 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
 }
 
 std::string describe(const ErrorEstimate& estimate) {
+    if (!std::isfinite(estimate.rmse))
+        return "noise unknown";
     if (!estimate.complete)
         return fmt::format("noise at most {:.2g}", estimate.noise);
     return fmt::format("estimated RMSE {:.2g} (noise {:.2g}, bias {:.2g})", estimate.rmse, estimate.noise,

@@ -18,7 +18,7 @@ struct ErrorEstimate {
 
     bool complete = false; ///< false: there is no estimate of bias, and `noise` is from the plain spread of the passes,
                            ///< which is an upper limit: passes are stratified against each other
-    std::vector<std::array<float, 3>> pixel_noise; ///< standard error, units of XYZ
+    std::vector<std::array<float, 3>> pixel_noise; ///< standard error, units of XYZ; empty unless complete
     std::vector<std::array<float, 3>> pixel_bias;  ///< signed, units of XYZ; empty unless complete
 };
 
