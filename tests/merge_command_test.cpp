@@ -19,7 +19,8 @@ TEST(MergeCommand, ARenderInPiecesIsTheWholeImage) {
     const ChildResult merged = run_tristim({"merge", path("c.exr"), path("a.exr"), "--checkpoint", path("ac.exr"),
                                             "--outfile", path("ac-image.exr"), "--outfile", path("ac.png")});
     EXPECT_EQ(merged.exit_code, 0) << merged.standard_error;
-    EXPECT_EQ(merged.standard_error, "7 passes (0:3,5:9); 0 non-finite values\n");
+    EXPECT_EQ(merged.standard_error.find("7 passes (0:3,5:9); noise at most "), 0U) << merged.standard_error;
+    EXPECT_NE(merged.standard_error.find("; 0 non-finite values\n"), std::string::npos) << merged.standard_error;
     EXPECT_TRUE(std::filesystem::exists(path("ac.png")));
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path("ac-image.exr"));
     ASSERT_TRUE(input) << OIIO::geterror();
