@@ -90,7 +90,6 @@ class Renderer {
     std::vector<Photon> photons() const;
     std::vector<float> pass_table() const { return pass_table_.read(device_); }
     std::vector<cl_float4> gathered_flux() const { return gathered_flux_.read(device_); }
-    std::vector<cl_float4> inner_flux() const { return inner_flux_.read(device_); }
 
   private:
     void build_kernels();
