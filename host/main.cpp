@@ -15,6 +15,7 @@
 #include "commands/report.h"
 #include "commands/selftest.h"
 #include "commands/spectra.h"
+#include "mpi/agree.h"
 #include "opencl/errors.h"
 
 #include <CLI/CLI.hpp>
@@ -75,8 +76,12 @@ int run(int argc, char** argv) {
         if (error.get_exit_code() == 0)
             return app.exit(error); // --help, --version
         const auto chosen = app.get_subcommands();
-        fmt::print(stderr, "tristim: {} (see 'tristim {}--help')\n", error.what(),
-                   chosen.empty() ? "" : chosen.front()->get_name() + " ");
+        tristim::at_first_rank(tristim::join_ranks(), [&] {
+            fmt::print(stderr, "tristim: {} (see 'tristim {}--help')\n", error.what(),
+                       chosen.empty() ? "" : chosen.front()->get_name() + " ");
+            return exit_usage;
+        });
+        tristim::leave_ranks();
         return exit_usage;
     }
     return 0;
@@ -85,14 +90,21 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+    std::string problem;
     try {
         return run(argc, argv);
-    } catch (const tristim::Error& error) {
-        fmt::print(stderr, "tristim: {}\n", error.what());
-    } catch (const ::cl::Error& error) {
-        fmt::print(stderr, "tristim: {}\n", tristim::describe_opencl_error(error));
+    } catch (const tristim::EndedElsewhere& end) {
+        return end.exit_code;
+    } catch (const tristim::Error&) {
+        problem = tristim::describe_current_exception();
+    } catch (const ::cl::Error&) {
+        problem = tristim::describe_current_exception();
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "tristim: out of memory\n");
+        problem = tristim::describe_current_exception();
     }
+    tristim::Communicator* const ranks = tristim::joined_ranks();
+    fmt::print(stderr, "tristim: {}{}\n", ranks != nullptr ? fmt::format("rank {}: ", ranks->rank()) : "", problem);
+    if (ranks != nullptr)
+        ranks->abort(exit_failure); // the others wait for this one
     return exit_failure;
 }

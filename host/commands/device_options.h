@@ -15,7 +15,7 @@ inline void add_device_option(CLI::App& command, std::string& device) {
         .add_option(
             "--device", device,
             "OpenCL device: index, cpu, gpu, or part of its name or platform; render shares passes among several "
-            "with commas between [TRISTIM_DEVICE, else first CPU]")
+            "with commas between, and ranks of mpirun take turns at them [TRISTIM_DEVICE, else first CPU]")
         ->type_name("INDEX|NAME");
 }
 

@@ -13,7 +13,7 @@ constexpr double seconds_per_estimating_second = 200.0;
 
 } // namespace
 
-bool ErrorWatch::reached(Team& team, std::uint64_t passes) {
+bool ErrorWatch::reached(PassRenderer& renderer, std::uint64_t passes) {
     if (!target_)
         return false;
     if (!requested_) {
@@ -22,11 +22,11 @@ bool ErrorWatch::reached(Team& team, std::uint64_t passes) {
         const bool near = predicted && static_cast<double>(passes) >= *predicted && passes > estimated_at_;
         if (!(much_done || near) || stopwatch_.seconds() - finished_at_ < seconds_per_estimating_second * cost_)
             return false;
-        team.request_sums();
+        renderer.request_sums();
         requested_ = true;
     }
     const Stopwatch estimating;
-    const std::optional<RenderSums> sums = team.requested_sums();
+    const std::optional<RenderSums> sums = renderer.requested_sums();
     if (!sums)
         return false;
     requested_ = false;

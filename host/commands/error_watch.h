@@ -2,7 +2,7 @@
 
 #include "base/stopwatch.h"
 #include "render/error_trend.h"
-#include "render/team.h"
+#include "render/pass_renderer.h"
 
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ class ErrorWatch {
     /// `passes` are all that are in the image by now. Estimates when these are a quarter more than last time or the
     /// trend says that the target is reached, unless that would take more than a hundredth of the time. Whether the
     /// last estimate fell under the target.
-    bool reached(Team& team, std::uint64_t passes);
+    bool reached(PassRenderer& renderer, std::uint64_t passes);
 
     /// Seconds to the target after `passes`, of which `here` took `seconds`; none while it cannot be told.
     std::optional<double> remaining(std::uint64_t passes, std::uint64_t here, double seconds) const;

@@ -9,7 +9,7 @@ volatile std::sig_atomic_t caught = 0;
 
 } // namespace
 
-void catch_interrupts() {
+void catch_interrupts(bool among_ranks) {
     struct sigaction action {};
     action.sa_handler = [](int) {
         caught = 1;
@@ -18,6 +18,10 @@ void catch_interrupts() {
     };
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    if (among_ranks) {
+        sigaction(SIGUSR1, &action, nullptr);
+        sigaction(SIGUSR2, &action, nullptr);
+    }
     std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -10,13 +10,19 @@
 #include "commands/render_arguments.h"
 #include "commands/render_checkpoint.h"
 #include "image/output_file.h"
+#include "mpi/agree.h"
+#include "mpi/joint_render.h"
+#include "opencl/errors.h"
 #include "render/choose_method.h"
 #include "render/image_metadata.h"
 #include "render/stats_json.h"
 #include "render/team.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <utility>
 
 namespace tristim {
 namespace {
@@ -35,10 +41,16 @@ struct RenderCommand {
     bool quiet = false;
 };
 
-std::vector<DeviceInfo> infos(const std::vector<Device>& devices) {
+/// Of the devices that took part; of those of several ranks, each kind once.
+std::vector<DeviceInfo> devices(const std::vector<DeviceShare>& shares) {
     std::vector<DeviceInfo> result;
-    for (const Device& device : devices)
-        result.push_back(device.info);
+    for (const DeviceShare& share : shares) {
+        const bool known = std::any_of(result.begin(), result.end(), [&](const DeviceInfo& info) {
+            return info.name == share.device.name && info.driver == share.device.driver;
+        });
+        if (shares.back().rank == 0 || (!known && !share.device.name.empty()))
+            result.push_back(share.device);
+    }
     return result;
 }
 
@@ -59,7 +71,7 @@ RenderBudget limits(const RenderCommand& command, const Scene& scene) {
 }
 
 /// Renders passes until a limit or the error target is reached, the user interrupts or no device is left.
-RenderOutcome render_passes(Team& team, const RenderOptions& options, const RenderBudget& limits,
+RenderOutcome render_passes(PassRenderer& renderer, const RenderOptions& options, const RenderBudget& limits,
                             const RenderCommand& command, RenderCheckpoint& checkpoint) {
     const std::uint64_t earlier = checkpoint.resumed_passes().count();
     RenderBudget left = limits;
@@ -68,13 +80,12 @@ RenderOutcome render_passes(Team& team, const RenderOptions& options, const Rend
     Progress progress(left, options.photons_per_pass, command.quiet, earlier);
     ErrorWatch watch(command.error_target, options.region.width);
     const Stopwatch stopwatch;
-    checkpoint.begin(team);
-    team.render(limits, [&](std::uint64_t done) {
+    renderer.render(limits, [&](std::uint64_t done) {
         progress.update(done, watch.text(), watch.remaining(earlier + done, done, stopwatch.seconds()));
-        checkpoint.update(team);
-        return !watch.reached(team, earlier + done) && !interrupted();
+        checkpoint.update(renderer);
+        return !watch.reached(renderer, earlier + done) && !interrupted();
     });
-    RenderOutcome outcome = team.outcome();
+    RenderOutcome outcome = renderer.outcome();
     progress.finish(outcome.statistics.passes - earlier);
     outcome.statistics.render_seconds += checkpoint.resumed_seconds();
     return outcome;
@@ -82,26 +93,38 @@ RenderOutcome render_passes(Team& team, const RenderOptions& options, const Rend
 
 /// Tells of the devices that failed. Whether the others did without them what was asked for.
 bool report_failures(const RenderOutcome& outcome, const RenderBudget& limits) {
+    const bool ranks = outcome.shares.back().rank > 0;
     std::size_t failed = 0;
     for (const DeviceShare& share : outcome.shares) {
         if (share.failure.empty())
             continue;
         ++failed;
-        fmt::print(stderr, "{}: device '{}' failed after {} passes: {}\n",
-                   failed == outcome.shares.size() ? "error" : "warning", share.device.name, share.passes,
-                   share.failure);
+        fmt::print(stderr, "{}: {}device '{}' failed after {} passes: {}\n",
+                   failed == outcome.shares.size() ? "error" : "warning",
+                   ranks ? fmt::format("rank {}'s ", share.rank) : "", share.device.name, share.passes, share.failure);
     }
     return failed < outcome.shares.size() || passes_to_do(limits, outcome.sums.passes).empty();
 }
 
-/// "A" or "A (41 passes), B (23 passes)".
+/// "A" or "A (41 passes), B (23 passes)"; of several ranks, "8 ranks: 8 × A (64 passes)".
 std::string describe(const std::vector<DeviceShare>& shares) {
     if (shares.size() == 1)
         return shares.front().device.name;
     std::vector<std::string> parts;
-    for (const DeviceShare& share : shares)
-        parts.push_back(fmt::format("{} ({} passes)", share.device.name, share.passes));
-    return fmt::format("{}", fmt::join(parts, ", "));
+    if (shares.back().rank == 0) {
+        for (const DeviceShare& share : shares)
+            parts.push_back(fmt::format("{} ({} passes)", share.device.name, share.passes));
+        return fmt::format("{}", fmt::join(parts, ", "));
+    }
+    std::map<std::string, std::pair<int, std::uint64_t>> kinds; // how many, and their passes
+    for (const DeviceShare& share : shares) {
+        auto& [count, passes] = kinds[share.device.name];
+        ++count;
+        passes += share.passes;
+    }
+    for (const auto& [name, kind] : kinds)
+        parts.push_back(fmt::format("{} × {} ({} passes)", kind.first, name, kind.second));
+    return fmt::format("{} ranks: {}", shares.back().rank + 1, fmt::join(parts, ", "));
 }
 
 /// The estimate and, if there is a target, whether it is reached.
@@ -126,76 +149,153 @@ void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& devic
         fmt::print(stderr, "{}", describe(choice));
 }
 
-void run(RenderCommand& command) {
+/// What is known before the device does anything.
+struct Prepared {
+    Scene scene;
+    RenderOptions options;
+    RenderBudget limits;
+    std::vector<Device> devices;
+    std::unique_ptr<RenderCheckpoint> checkpoint; ///< that of rank 0; others have none to read or write
+    double load_seconds = 0.0;
+};
+
+Prepared prepare(RenderCommand& command, const Communicator* ranks) {
+    const bool first = ranks == nullptr || ranks->rank() == 0;
     const Stopwatch loading;
-    const Scene scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
-    const double load_seconds = loading.seconds();
-    RenderOptions options = resolve_options(command.arguments, scene);
+    Prepared prepared;
+    prepared.scene = load_scene(command.arguments.scene, command.arguments.rgb_upsampling);
+    prepared.load_seconds = loading.seconds();
+    RenderOptions& options = prepared.options = resolve_options(command.arguments, prepared.scene);
     if (command.error_target && !(*command.error_target > 0.0 && std::isfinite(*command.error_target)))
         fail("--error-target must be a positive number");
     options.error_estimate = command.error_target || wants_error_estimate(command.image);
-    const RenderBudget stop = limits(command, scene);
+    prepared.limits = limits(command, prepared.scene);
+    if (ranks != nullptr && options.statistics_radius)
+        fail("--radius statistics needs each pass after those before it, so one process, not {}", ranks->size());
     if (command.image.outfiles.empty())
-        command.image.outfiles.push_back(scene.settings.filename);
-    RenderCheckpoint checkpoint(command.checkpoint);
-    check(command.image, checkpoint.path());
-    if (!command.stats.empty())
-        check_output_file(command.stats);
-    if (!command.quiet)
-        print_notes(scene);
-
-    checkpoint.choose_method(options);
-    checkpoint.follow_error_sums(options);
-    if (!options.auto_method)
-        checkpoint.check(scene, options);
-    catch_interrupts();
-    const std::vector<Device> devices = open_devices(command.arguments.device);
-    std::shared_ptr<const DeviceScene> device_scene;
-    if (options.auto_method) {
-        device_scene = std::make_shared<const DeviceScene>(scene, options, devices.front());
-        choose(device_scene, devices.front(), stop, command.quiet, options);
-        checkpoint.check(scene, options);
+        command.image.outfiles.push_back(prepared.scene.settings.filename);
+    prepared.checkpoint = std::make_unique<RenderCheckpoint>(first ? command.checkpoint : CheckpointArguments{});
+    if (first) {
+        check(command.image, prepared.checkpoint->path());
+        if (!command.stats.empty())
+            check_output_file(command.stats);
+    } else {
+        command.quiet = true;
+        command.error_target.reset();
     }
-    Team team(scene, options, devices, device_scene);
-    const RenderOutcome outcome = render_passes(team, options, stop, command, checkpoint);
-    const RenderStatistics& statistics = outcome.statistics;
-    const bool complete = report_failures(outcome, stop);
-    if (statistics.passes == 0)
-        fail("{} before the first pass was done: no image written",
-             interrupted() ? "interrupted" : "no device was left");
+    if (!command.quiet)
+        print_notes(prepared.scene);
 
-    const bool saved = checkpoint.save(outcome.sums);
+    prepared.checkpoint->choose_method(options);
+    prepared.checkpoint->follow_error_sums(options);
+    if (!options.auto_method)
+        prepared.checkpoint->check(prepared.scene, options);
+    catch_interrupts(ranks != nullptr);
+    if (ranks == nullptr)
+        prepared.devices = open_devices(command.arguments.device);
+    else
+        prepared.devices = {open_device_in_turn(command.arguments.device, ranks->local_rank())};
+    return prepared;
+}
+
+/// --method auto: rank 0 chooses for all. And a checkpoint that it resumes may leave nothing to estimate errors from.
+std::shared_ptr<const DeviceScene> choose(Prepared& prepared, bool quiet, Communicator* ranks) {
+    RenderOptions& options = prepared.options;
+    std::shared_ptr<const DeviceScene> device_scene;
+    at_first_rank(ranks, [&] {
+        if (options.auto_method) {
+            device_scene = std::make_shared<const DeviceScene>(prepared.scene, options, prepared.devices.front());
+            choose(device_scene, prepared.devices.front(), prepared.limits, quiet, options);
+            prepared.checkpoint->check(prepared.scene, options);
+        }
+        return 0;
+    });
+    if (ranks != nullptr) {
+        options.method = parse_method(ranks->broadcast(options.method.name()));
+        options.auto_method = false;
+        options.error_estimate = ranks->broadcast(options.error_estimate ? "yes" : "no") == "yes";
+    }
+    return device_scene;
+}
+
+/// What renders on the devices of this process, or of all ranks.
+std::unique_ptr<PassRenderer> make_renderer(Prepared& prepared, bool quiet, Communicator* ranks) {
+    const std::shared_ptr<const DeviceScene> device_scene = choose(prepared, quiet, ranks);
+    if (ranks != nullptr)
+        check_same_image(*ranks, prepared.scene, prepared.options);
+    std::unique_ptr<Team> team;
+    std::string failure;
+    at_all_ranks(ranks, [&] {
+        try {
+            team = std::make_unique<Team>(prepared.scene, prepared.options, prepared.devices, device_scene);
+            prepared.checkpoint->begin(*team);
+        } catch (const std::exception&) {
+            if (ranks == nullptr || ranks->rank() == 0)
+                throw;
+            failure = describe_current_exception();
+        }
+    });
+    if (ranks == nullptr)
+        return team;
+    return std::make_unique<JointRender>(*ranks, prepared.options, std::move(team), failure,
+                                         prepared.checkpoint->resumed_passes());
+}
+
+/// Writes what was asked for, and tells of it. The exit status.
+int finish(const RenderCommand& command, const Prepared& prepared, const RenderOutcome& outcome) {
+    const RenderOptions& options = prepared.options;
+    const bool stopped = interrupted() || outcome.stopped_elsewhere;
+    const RenderStatistics& statistics = outcome.statistics;
+    const bool complete = report_failures(outcome, prepared.limits);
+    if (statistics.passes == 0)
+        fail("{} before the first pass was done: no image written", stopped ? "interrupted" : "no device was left");
+
+    const bool saved = prepared.checkpoint->save(outcome.sums);
     const FilmImage film = developed(outcome.sums, options);
     const ErrorEstimate estimate = estimate_error(outcome.sums, options.region.width);
-    write(
-        command.image, xyz_image(film),
-        with_passes(image_metadata(options, statistics, infos(devices), command.arguments.scene, film.rejected_samples),
-                    outcome.sums.passes),
-        estimate, outcome.sums.film);
+    write(command.image, xyz_image(film),
+          with_passes(image_metadata(options, statistics, devices(outcome.shares), command.arguments.scene,
+                                     film.rejected_samples),
+                      outcome.sums.passes),
+          estimate, outcome.sums.film);
     if (!command.stats.empty()) {
-        nlohmann::ordered_json json = stats_json(options, outcome, command.arguments.scene, load_seconds, estimate);
-        if (checkpoint.is_wanted())
-            json["checkpoints"] = checkpoint.stats_json();
+        nlohmann::ordered_json json =
+            stats_json(options, outcome, command.arguments.scene, prepared.load_seconds, estimate);
+        if (prepared.checkpoint->is_wanted())
+            json["checkpoints"] = prepared.checkpoint->stats_json();
         replace_file(command.stats, json.dump(2) + "\n");
     }
     if (film.rejected_samples > 0)
         fmt::print(stderr, "warning: {} values were not finite and left out: {}\n", film.rejected_samples,
                    describe(outcome.sums.non_finite));
     std::vector<std::string> written = command.image.outfiles;
-    if (checkpoint.is_wanted() && saved)
-        written.push_back(checkpoint.path());
+    if (prepared.checkpoint->is_wanted() && saved)
+        written.push_back(prepared.checkpoint->path());
     if (!command.quiet)
         fmt::print(stderr,
                    "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {}; {} non-finite values; wrote {}\n",
-                   interrupted() ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
+                   stopped ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
                    statistics.render_seconds, statistics.build_kernels_seconds,
                    describe(estimate, command.error_target), film.rejected_samples, fmt::join(written, ", "));
-    if (!interrupted())
-        team.keep_programs();
     if (!complete || !saved)
-        throw CLI::RuntimeError(1);
-    if (interrupted() && !(stop.passes && passes_to_do(stop, outcome.sums.passes).empty()))
-        throw CLI::RuntimeError(exit_interrupted_and_saved);
+        return 1;
+    const bool all_done = prepared.limits.passes && passes_to_do(prepared.limits, outcome.sums.passes).empty();
+    return stopped && !all_done ? exit_interrupted_and_saved : 0;
+}
+
+void run(RenderCommand& command) {
+    Communicator* const ranks = join_ranks();
+    Prepared prepared;
+    at_all_ranks(ranks, [&] { prepared = prepare(command, ranks); });
+    const std::unique_ptr<PassRenderer> renderer = make_renderer(prepared, command.quiet, ranks);
+    const RenderOutcome outcome =
+        render_passes(*renderer, prepared.options, prepared.limits, command, *prepared.checkpoint);
+    const int exit_status = at_first_rank(ranks, [&] { return finish(command, prepared, outcome); });
+    if (!interrupted())
+        renderer->keep_programs();
+    leave_ranks();
+    if (exit_status != 0)
+        throw CLI::RuntimeError(exit_status);
 }
 
 } // namespace

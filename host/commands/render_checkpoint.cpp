@@ -113,15 +113,15 @@ void RenderCheckpoint::begin(Team& team) {
     stopwatch_ = Stopwatch();
 }
 
-void RenderCheckpoint::update(Team& team) {
+void RenderCheckpoint::update(PassRenderer& renderer) {
     if (path_.empty())
         return;
     const double every = every_.value_or(std::max(default_seconds, seconds_per_writing_second * writing_seconds_));
     if (!requested_ && stopwatch_.seconds() - written_at_ < every)
         return;
     if (!requested_)
-        team.request_sums();
-    std::optional<RenderSums> sums = team.requested_sums();
+        renderer.request_sums();
+    std::optional<RenderSums> sums = renderer.requested_sums();
     requested_ = !sums;
     if (sums)
         save(std::move(*sums));

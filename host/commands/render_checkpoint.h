@@ -44,9 +44,9 @@ class RenderCheckpoint {
     /// Has a team go on from a resumed render. Call it, or give the radii, before anything is written.
     void begin(Team& team);
 
-    /// Writes the file now and then, from what the team's devices save when asked. A file that cannot be written is
+    /// Writes the file now and then, from what the devices save when asked. A file that cannot be written is
     /// told on stderr, and tried again later.
-    void update(Team& team);
+    void update(PassRenderer& renderer);
 
     /// Writes the file unless it holds just these passes. Whether it could be written (which it need not, if none is
     /// wanted); if not, stderr tells why.

@@ -73,20 +73,28 @@ bool is_index(const std::string& text) {
            std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// The position of the device that the selector names, or -1.
-int find_device(const std::vector<DeviceInfo>& devices, const std::string& selector) {
+/// The positions of the devices that the selector names.
+std::vector<int> find_devices(const std::vector<DeviceInfo>& devices, const std::string& selector) {
     if (is_index(selector)) {
         const int index = std::stoi(selector);
-        return index < static_cast<int>(devices.size()) ? index : -1;
+        return index < static_cast<int>(devices.size()) ? std::vector{index} : std::vector<int>{};
     }
     const std::string name = lower(selector);
     const cl_device_type type = name == "cpu" ? CL_DEVICE_TYPE_CPU : name == "gpu" ? CL_DEVICE_TYPE_GPU : 0;
-    const auto match = std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& info) {
-        if (type != 0)
-            return (info.type & type) != 0;
-        return lower(info.name).find(name) != std::string::npos || lower(info.platform).find(name) != std::string::npos;
-    });
-    return match != devices.end() ? match->index : -1;
+    std::vector<int> found;
+    for (const DeviceInfo& info : devices) {
+        const bool named =
+            lower(info.name).find(name) != std::string::npos || lower(info.platform).find(name) != std::string::npos;
+        if (type != 0 ? (info.type & type) != 0 : named)
+            found.push_back(info.index);
+    }
+    return found;
+}
+
+/// The position of the first device that the selector names, or -1.
+int find_device(const std::vector<DeviceInfo>& devices, const std::string& selector) {
+    const std::vector<int> found = find_devices(devices, selector);
+    return found.empty() ? -1 : found.front();
 }
 
 std::vector<DeviceInfo> infos(const std::vector<Listed>& listed) {
@@ -133,6 +141,31 @@ std::vector<std::string> selectors_in(const std::string& list) {
     return selectors;
 }
 
+/// The devices of a list among which several processes take turns, as indices; selectors that name none stay.
+std::vector<std::string> turns(const std::vector<DeviceInfo>& devices, const std::string& list) {
+    std::vector<std::string> result;
+    for (const std::string& selector : selectors_in(list)) {
+        const std::vector<int> found = selector.empty() ? std::vector<int>{} : find_devices(devices, selector);
+        const auto at = [&](int index) { return devices[static_cast<std::size_t>(index)]; };
+        if (found.empty() || (at(found.front()).type & CL_DEVICE_TYPE_CPU) != 0) {
+            result.push_back(selector);
+            continue;
+        }
+        for (const int index : found) {
+            if ((at(index).type & CL_DEVICE_TYPE_CPU) == 0 && at(index).platform == at(found.front()).platform)
+                result.push_back(std::to_string(index));
+        }
+    }
+    return result;
+}
+
+std::vector<Listed> enumerate_some() {
+    std::vector<Listed> listed = enumerate();
+    if (listed.empty())
+        fail("no OpenCL device found: install an OpenCL platform (Debian: apt install pocl-opencl-icd)");
+    return listed;
+}
+
 } // namespace
 
 std::vector<DeviceInfo> list_devices() {
@@ -159,13 +192,17 @@ Device open_device(const std::string& selector) {
 }
 
 std::vector<Device> open_devices(const std::string& selectors) {
-    const std::vector<Listed> listed = enumerate();
-    if (listed.empty())
-        fail("no OpenCL device found: install an OpenCL platform (Debian: apt install pocl-opencl-icd)");
+    const std::vector<Listed> listed = enumerate_some();
     std::vector<Device> devices;
     for (const std::string& selector : selectors_in(selectors))
         devices.push_back(open_listed(listed, selector, static_cast<int>(devices.size())));
     return devices;
+}
+
+Device open_device_in_turn(const std::string& selectors, int turn) {
+    const std::vector<Listed> listed = enumerate_some();
+    const std::vector<std::string> choice = turns(infos(listed), selectors);
+    return open_listed(listed, choice[static_cast<std::size_t>(turn) % choice.size()], 0);
 }
 
 } // namespace tristim

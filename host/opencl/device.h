@@ -59,6 +59,11 @@ Device open_device(const std::string& selector);
 /// The same for a list of selectors with commas between: "0,2" or "cpu,gpu".
 std::vector<Device> open_devices(const std::string& selectors);
 
+/// For a process that is the `turn`th (from 0) of several on its machine: one device of such a list, each process
+/// another one in turn. A selector that the devices of one platform match several times, CPUs left out, stands for all
+/// of these; a CPU is shared.
+Device open_device_in_turn(const std::string& selectors, int turn);
+
 /// The index of the first device that open_device("") would take, -1 if there is none.
 int default_device_index(const std::vector<DeviceInfo>& devices);
 

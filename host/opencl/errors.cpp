@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <new>
 
 namespace tristim {
 namespace {
@@ -102,6 +103,18 @@ std::string opencl_error_name(cl_int code) {
 std::string describe_opencl_error(const ::cl::Error& error) {
     return fmt::format("OpenCL call {} failed with {}: {}", error.what(), opencl_error_name(error.err()),
                        advice(error.err()));
+}
+
+std::string describe_current_exception() {
+    try {
+        throw;
+    } catch (const ::cl::Error& error) {
+        return describe_opencl_error(error);
+    } catch (const std::bad_alloc&) {
+        return "out of memory";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
 }
 
 } // namespace tristim

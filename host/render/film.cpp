@@ -64,7 +64,7 @@ std::uint64_t shadow_rays(const FilmPixel& pixel) {
     return long_count(pixel.shadow_rays, pixel.ray_carries >> 16U);
 }
 
-void add_film(std::vector<FilmPixel>& film, const std::vector<FilmPixel>& more) {
+void add_film(std::span<FilmPixel> film, std::span<const FilmPixel> more) {
     for (std::size_t i = 0; i < film.size(); ++i) {
         FilmPixel& a = film[i];
         const FilmPixel& b = more[i];

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tristim {
@@ -33,7 +34,7 @@ std::uint64_t shadow_rays(const FilmPixel& pixel);
 /// Adds the passes of another film of the same pixels to `film`. Whatever passes are in which of several films, and in
 /// whatever order these are added up, the developed means are the same, and variances but for rounding. What --radius
 /// statistics keeps is not summed.
-void add_film(std::vector<FilmPixel>& film, const std::vector<FilmPixel>& more);
+void add_film(std::span<FilmPixel> film, std::span<const FilmPixel> more);
 
 /// The image alone.
 XyzImage xyz_image(FilmImage film);

@@ -57,6 +57,21 @@ void PassQueue::failed(std::size_t worker, const std::vector<std::uint32_t>& los
     returned_.insert(returned_.end(), lost.rbegin(), lost.rend());
 }
 
+void PassQueue::add(const PassRanges& passes) {
+    ranges_.erase(ranges_.begin(), ranges_.begin() + static_cast<std::ptrdiff_t>(current_));
+    current_ = 0;
+    ranges_.insert(ranges_.end(), passes.ranges().begin(), passes.ranges().end());
+}
+
+double PassQueue::pass_seconds() const {
+    double speed = 0.0;
+    for (const Worker& worker : workers_) {
+        if (!worker.failed && worker.passes > 0)
+            speed += 1.0 / worker.pass_seconds();
+    }
+    return speed > 0.0 ? 1.0 / speed : 0.0;
+}
+
 bool PassQueue::busy() const {
     return std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) { return w.began.has_value(); });
 }

@@ -15,6 +15,9 @@ class PassQueue {
     /// These passes.
     PassQueue(const PassRanges& passes, std::size_t workers) : ranges_(passes.ranges()), workers_(workers) {}
 
+    /// More passes, to be done after those that are there.
+    void add(const PassRanges& passes);
+
     /// The pass that an idle worker is to begin now; none if no pass is left or the others, at the speed that they have
     /// shown, will have done all that are left before it could do one.
     std::optional<std::uint32_t> take(std::size_t worker, double now);
@@ -29,6 +32,12 @@ class PassQueue {
     bool empty() const { return left() == 0; }
     bool busy() const;
 
+    /// Passes that no one has begun yet.
+    std::uint64_t left() const;
+
+    /// What a pass takes the workers together, at the speed that they have shown; 0 before any has.
+    double pass_seconds() const;
+
   private:
     struct Worker {
         bool failed = false;
@@ -38,7 +47,6 @@ class PassQueue {
         double pass_seconds() const { return seconds / static_cast<double>(passes); }
     };
 
-    std::uint64_t left() const;
     double others_can_do(std::size_t worker, double now, double until) const;
 
     std::vector<PassRanges::Range> ranges_;

@@ -26,6 +26,12 @@ void PassRanges::add(const PassRanges& more) {
         ranges_.back().end = more.ranges_.front().end;
         return;
     }
+    if (more.empty())
+        return;
+    if (ranges_.empty() || ranges_.back().end < more.ranges_.front().begin) {
+        ranges_.insert(ranges_.end(), more.ranges_.begin(), more.ranges_.end());
+        return;
+    }
     if (const PassRanges twice = common(more); !twice.empty())
         fail("passes {} would be added a second time", twice.text());
     std::vector<Range> all = ranges_;
@@ -53,6 +59,39 @@ PassRanges PassRanges::common(const PassRanges& other) const {
             ++b;
     }
     return result;
+}
+
+PassRanges PassRanges::without(const PassRanges& other) const {
+    PassRanges result;
+    auto b = other.ranges_.begin();
+    for (Range rest : ranges_) {
+        while (b != other.ranges_.end() && b->begin < rest.end) {
+            if (rest.begin < b->begin)
+                result.ranges_.push_back({rest.begin, b->begin});
+            rest.begin = std::max(rest.begin, b->end);
+            if (b->end > rest.end)
+                break;
+            ++b;
+        }
+        if (rest.begin < rest.end)
+            result.ranges_.push_back(rest);
+    }
+    return result;
+}
+
+PassRanges PassRanges::take(std::uint64_t count) {
+    PassRanges taken;
+    auto range = ranges_.begin();
+    for (; range != ranges_.end() && count > 0; ++range) {
+        const auto part = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, range->end - range->begin));
+        taken.ranges_.push_back({range->begin, range->begin + part});
+        range->begin += part;
+        count -= part;
+        if (range->begin < range->end)
+            break;
+    }
+    ranges_.erase(ranges_.begin(), range);
+    return taken;
 }
 
 PassRanges PassRanges::missing(std::uint32_t begin, std::uint32_t end) const {

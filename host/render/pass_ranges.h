@@ -33,6 +33,12 @@ class PassRanges {
     /// The passes in both.
     PassRanges common(const PassRanges& other) const;
 
+    /// Its passes that are not in the other.
+    PassRanges without(const PassRanges& other) const;
+
+    /// Takes the first of its passes away, so many or all that there are, and returns them.
+    PassRanges take(std::uint64_t count);
+
     /// The passes from begin to end − 1 that are not in it.
     PassRanges missing(std::uint32_t begin, std::uint32_t end) const;
 

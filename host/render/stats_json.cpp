@@ -19,6 +19,8 @@ nlohmann::ordered_json stats_json(const RenderOptions& options, const RenderOutc
                                    {"passes", share.passes},
                                    {"seconds", share.seconds},
                                    {"failure", share.failure}});
+        if (outcome.shares.back().rank > 0)
+            json["devices"].back()["rank"] = share.rank;
     }
     json["resolution"] = {options.width, options.height};
     json["region"] = {options.region.x, options.region.y, options.region.x + options.region.width,

@@ -15,17 +15,6 @@ namespace {
 /// Sums are saved from a device when so many times the time has gone by that saving took: half a percent of a render.
 constexpr double seconds_per_saving_second = 200.0;
 
-/// What went wrong, of the exception that is being handled.
-std::string reason() {
-    try {
-        throw;
-    } catch (const ::cl::Error& error) {
-        return describe_opencl_error(error);
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-}
-
 /// Whether they are all passes up to one.
 bool begin_the_image(const PassRanges& passes) {
     return passes.empty() || passes == PassRanges(0, passes.ranges().front().end);
@@ -52,7 +41,7 @@ Team::Team(const Scene& scene, const RenderOptions& options, const std::vector<D
             member.renderer = i == 0 && made ? std::make_unique<Renderer>(made, options, devices[i])
                                              : std::make_unique<Renderer>(scene, options, devices[i]);
         } catch (const std::exception&) {
-            member.failure = reason();
+            member.failure = describe_current_exception();
         }
     };
     std::vector<std::thread> threads;
@@ -81,15 +70,19 @@ std::vector<DeviceInfo> Team::devices() const {
     return devices;
 }
 
+void Team::set_initial_radii(const std::vector<float>& radii) {
+    for (Member& member : members_) {
+        if (member.renderer)
+            member.renderer->set_initial_radii(radii);
+    }
+}
+
 std::vector<float> Team::initial_radii() const {
     return members_[first_].renderer->initial_radii();
 }
 
 void Team::resume(const RenderSums& sums, const std::vector<float>& radii) {
-    for (Member& member : members_) {
-        if (member.renderer)
-            member.renderer->set_initial_radii(radii);
-    }
+    set_initial_radii(radii);
     // On a device alone, passes go on being added as if there had been no pause.
     Member& member = members_[first_];
     member.renderer->restore(sums.film, 0, 0.0);
@@ -100,8 +93,7 @@ void Team::resume(const RenderSums& sums, const std::vector<float>& radii) {
         0; // the film counts them
 }
 
-void Team::render(const RenderBudget& limits, const std::function<bool(std::uint64_t)>& go_on) {
-    const Stopwatch stopwatch;
+void Team::render(const RenderBudget& limits, const GoOn& go_on) {
     const PassRanges earlier = members_[first_].earlier.passes;
     const PassRanges passes = passes_to_do(limits, earlier);
     if (options_.statistics_radius) {
@@ -112,6 +104,34 @@ void Team::render(const RenderBudget& limits, const std::function<bool(std::uint
                  earlier.empty() ? "none" : earlier.text());
     }
     queue_ = std::make_unique<PassQueue>(passes, members_.size());
+    run(limits.seconds, std::chrono::milliseconds(50), go_on);
+}
+
+void Team::render_given(std::chrono::milliseconds poll, const GoOn& go_on) {
+    given_ = true;
+    queue_ = std::make_unique<PassQueue>(PassRanges(), members_.size());
+    run({}, poll, go_on);
+}
+
+void Team::give(const PassRanges& passes) {
+    const std::lock_guard lock(mutex_);
+    queue_->add(passes);
+    changed_.notify_all();
+}
+
+std::uint64_t Team::queued() const {
+    const std::lock_guard lock(mutex_);
+    return queue_->left();
+}
+
+double Team::pass_seconds() const {
+    const std::lock_guard lock(mutex_);
+    return queue_->pass_seconds();
+}
+
+/// Has every device's thread work on the queue.
+void Team::run(const std::optional<double>& seconds, std::chrono::milliseconds poll, const GoOn& go_on) {
+    const Stopwatch stopwatch;
     std::size_t working = 0;
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -120,8 +140,8 @@ void Team::render(const RenderBudget& limits, const std::function<bool(std::uint
             continue;
         }
         ++working;
-        threads.emplace_back([this, i, &limits, &working] {
-            work(i, limits);
+        threads.emplace_back([this, i, &seconds, &working] {
+            work(i, seconds);
             const std::lock_guard lock(mutex_);
             --working;
             changed_.notify_all();
@@ -129,7 +149,7 @@ void Team::render(const RenderBudget& limits, const std::function<bool(std::uint
     }
     std::unique_lock lock(mutex_);
     while (working > 0) {
-        changed_.wait_for(lock, std::chrono::milliseconds(50));
+        changed_.wait_for(lock, poll);
         const std::uint64_t done = done_;
         lock.unlock();
         const bool stop = !go_on(done);
@@ -145,13 +165,13 @@ void Team::render(const RenderBudget& limits, const std::function<bool(std::uint
 }
 
 /// What a device's thread does.
-void Team::work(std::size_t index, const RenderBudget& limits) {
+void Team::work(std::size_t index, const std::optional<double>& seconds) {
     Member& member = members_[index];
     const Stopwatch stopwatch;
     std::unique_lock lock(mutex_);
     for (;;) {
-        const bool late = limits.seconds && stopwatch.seconds() >= *limits.seconds && (done_ > 0 || queue_->busy());
-        if (stopping_ || late || (queue_->empty() && !queue_->busy()))
+        const bool late = seconds && stopwatch.seconds() >= *seconds && (done_ > 0 || queue_->busy());
+        if (stopping_ || late || (!given_ && queue_->empty() && !queue_->busy()))
             return;
         const std::optional<std::uint32_t> pass = queue_->take(index, stopwatch.seconds());
         if (!pass && !member.requested) {
@@ -166,7 +186,7 @@ void Team::work(std::size_t index, const RenderBudget& limits) {
             }
             save_if_due(member, stopwatch.seconds());
         } catch (const std::exception&) {
-            member.failure = reason();
+            member.failure = describe_current_exception();
             const std::vector<std::uint32_t> lost = rescue(member);
             lock.lock();
             count(member, member.saved_passes);
@@ -192,6 +212,7 @@ void Team::request_sums() {
     const std::lock_guard lock(mutex_);
     for (Member& member : members_)
         member.requested = member.renderer && member.failure.empty();
+    changed_.notify_all();
 }
 
 std::optional<RenderSums> Team::requested_sums() {
@@ -281,13 +302,13 @@ RenderOutcome Team::outcome() {
     RenderOutcome outcome;
     bool first = true;
     for (Member& member : members_) {
-        DeviceShare share{member.device, 0, 0.0, member.failure};
+        DeviceShare share{member.device, 0, 0, 0.0, member.failure};
         if (member.renderer) {
             if (member.failure.empty()) {
                 try {
                     save(member);
                 } catch (const std::exception&) {
-                    share.failure = reason();
+                    share.failure = describe_current_exception();
                 }
             }
             const RenderStatistics& statistics = member.renderer->statistics();
@@ -307,6 +328,7 @@ RenderOutcome Team::outcome() {
     outcome.statistics.photons_emitted =
         outcome.statistics.passes * static_cast<std::uint64_t>(options_.photons_per_pass);
     outcome.statistics.render_seconds = render_seconds_;
+    outcome.stopped = stopping_;
     return outcome;
 }
 

@@ -1,33 +1,17 @@
 #pragma once
 
 #include "render/pass_queue.h"
+#include "render/pass_renderer.h"
 #include "render/renderer.h"
 
+#include <chrono>
 #include <condition_variable>
-#include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tristim {
-
-/// What one device did for a render.
-struct DeviceShare {
-    DeviceInfo device;
-    std::uint64_t passes = 0; ///< of its own in the image
-    double seconds = 0.0;     ///< rendering
-    std::string failure;      ///< why it stopped early, or empty
-};
-
-/// What a render has come to.
-struct RenderOutcome {
-    RenderSums sums;
-    RenderStatistics statistics; ///< of all devices, passes and photons of earlier renders among them; buffers are
-                                 ///< those of the first
-    std::vector<DeviceShare> shares;
-};
 
 /// The passes that limits ask for (of time aside), without those that are done.
 PassRanges passes_to_do(const RenderBudget& limits, const PassRanges& done);
@@ -35,7 +19,7 @@ PassRanges passes_to_do(const RenderBudget& limits, const PassRanges& done);
 /// Renders one scene on several devices. Each takes the next pass when it has done one, so faster ones do more; the
 /// image is the sum of the passes, whoever rendered which. If a device fails, what it had lately is rendered anew by
 /// the others; from a device that cannot even be read any more, sums are kept as they were moments before.
-class Team {
+class Team final : public PassRenderer {
   public:
     /// Builds a renderer on each device, all at the same time. A device where that fails takes no part (see failures)
     /// as long as one is left. Throws Error if the options cannot be rendered or no device is left, and if there are
@@ -52,21 +36,30 @@ class Team {
 
     /// The search radius of each pixel in pass 0, scene units. Not while it renders.
     std::vector<float> initial_radii() const;
+    void set_initial_radii(const std::vector<float>& radii);
 
-    /// Renders passes until a limit is reached, no device is left or `go_on` says no; that is called now and then with
-    /// the passes done by this call, from this thread. Call it once. Throws Error, before it begins, if radii follow
-    /// each pixel's statistics and the passes are not those after the ones that were resumed.
-    void render(const RenderBudget& limits, const std::function<bool(std::uint64_t passes)>& go_on);
+    /// Call it once. Throws Error, before it begins, if radii follow each pixel's statistics and the passes are not
+    /// those after the ones that were resumed.
+    void render(const RenderBudget& limits, const GoOn& go_on) override;
 
-    /// For `go_on`: has every device save its sums when it has done its pass, and then gives what all saved.
-    void request_sums();
-    std::optional<RenderSums> requested_sums();
+    /// Instead of render: renders what is given until no device is left or `go_on` says no, which is called at least as
+    /// often as `poll` says.
+    void render_given(std::chrono::milliseconds poll, const GoOn& go_on);
+
+    /// For the `go_on` of render_given: more passes to be done, those given that are not begun yet, and the seconds
+    /// between two passes done (0 before the first).
+    void give(const PassRanges& passes);
+    std::uint64_t queued() const;
+    double pass_seconds() const;
+
+    void request_sums() override;
+    std::optional<RenderSums> requested_sums() override;
 
     /// Also after devices have failed.
-    RenderOutcome outcome();
+    RenderOutcome outcome() override;
 
     /// Renderer::keep_programs of every device that has not failed.
-    void keep_programs() const;
+    void keep_programs() const override;
 
   private:
     struct Member {
@@ -85,7 +78,8 @@ class Team {
         RenderSums sums() const;
     };
 
-    void work(std::size_t index, const RenderBudget& limits);
+    void run(const std::optional<double>& seconds, std::chrono::milliseconds poll, const GoOn& go_on);
+    void work(std::size_t index, const std::optional<double>& seconds);
     void save(Member& member);
     void save_if_due(Member& member, double now);
     std::vector<std::uint32_t> rescue(Member& member);
@@ -97,8 +91,9 @@ class Team {
     std::unique_ptr<PassQueue> queue_;
     double render_seconds_ = 0.0;
     std::uint64_t done_ = 0;
+    bool given_ = false; ///< passes are given while it renders
     bool stopping_ = false;
-    std::mutex mutex_; ///< of queue_, done_, stopping_ and of the members' saved and requested
+    mutable std::mutex mutex_; ///< of queue_, done_, stopping_ and of the members' saved and requested
     std::condition_variable changed_;
 };
 

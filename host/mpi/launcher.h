@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace tristim {
+
+/// What started this process as one of several ranks, so far as the environment tells.
+struct Launcher {
+    std::string name;
+    int size = 0; ///< ranks; 0 if it does not say
+};
+
+/// None if the process was started alone.
+std::optional<Launcher> find_launcher();
+
+} // namespace tristim
