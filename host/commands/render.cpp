@@ -99,9 +99,13 @@ bool report_failures(const RenderOutcome& outcome, const RenderBudget& limits) {
         if (share.failure.empty())
             continue;
         ++failed;
-        fmt::print(stderr, "{}: {}device '{}' failed after {} passes: {}\n",
-                   failed == outcome.shares.size() ? "error" : "warning",
-                   ranks ? fmt::format("rank {}'s ", share.rank) : "", share.device.name, share.passes, share.failure);
+        const char* kind = failed == outcome.shares.size() ? "error" : "warning";
+        if (share.device.name.empty())
+            fmt::print(stderr, "{}: rank {} takes no part: {}\n", kind, share.rank, share.failure);
+        else
+            fmt::print(stderr, "{}: {}device '{}' failed after {} passes: {}\n", kind,
+                       ranks ? fmt::format("rank {}'s ", share.rank) : "", share.device.name, share.passes,
+                       share.failure);
     }
     return failed < outcome.shares.size() || passes_to_do(limits, outcome.sums.passes).empty();
 }
