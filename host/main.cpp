@@ -3,6 +3,7 @@
 #include "commands/bench_film.h"
 #include "commands/bench_pass.h"
 #include "commands/bench_rays.h"
+#include "commands/bench_reduce.h"
 #include "commands/bench_wavelengths.h"
 #include "commands/compare.h"
 #include "commands/devices.h"
@@ -67,6 +68,7 @@ int run(int argc, char** argv) {
     tristim::add_bench_rays_command(app);
     tristim::add_bench_pass_command(app);
     tristim::add_bench_film_command(app);
+    tristim::add_bench_reduce_command(app);
     tristim::add_bench_wavelengths_command(app);
     try {
         app.parse(argc, argv);

@@ -50,6 +50,9 @@ class Communicator {
     [[noreturn]] virtual void abort(int exit_code) = 0;
 };
 
+/// Whether this tristim was built with MPI.
+bool built_with_mpi();
+
 /// Joins the ranks that were started together with this process, if it has not yet. None if it was started alone: then
 /// nothing of MPI runs. Throws Error if it was started among ranks that it cannot join, such as those of another MPI.
 Communicator* join_ranks();

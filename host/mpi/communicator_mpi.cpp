@@ -170,6 +170,10 @@ MpiCommunicator* joined = nullptr;
 
 } // namespace
 
+bool built_with_mpi() {
+    return true;
+}
+
 Communicator* join_ranks() {
     const std::optional<Launcher> launcher = find_launcher();
     if (!launcher || launcher->size == 1)
