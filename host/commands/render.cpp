@@ -12,6 +12,7 @@
 #include "image/output_file.h"
 #include "mpi/agree.h"
 #include "mpi/joint_render.h"
+#include "mpi/launcher.h"
 #include "opencl/errors.h"
 #include "render/choose_method.h"
 #include "render/image_metadata.h"
@@ -199,6 +200,10 @@ Prepared prepare(RenderCommand& command, const Communicator* ranks) {
         prepared.devices = open_devices(command.arguments.device);
     else
         prepared.devices = {open_device_in_turn(command.arguments.device, ranks->local_rank())};
+    const bool on_cpu = (prepared.devices.front().info.type & CL_DEVICE_TYPE_CPU) != 0;
+    const std::string note = ranks != nullptr && on_cpu ? binding_note(ranks->local_size()) : "";
+    if (!command.quiet && !note.empty())
+        fmt::print(stderr, "note: {}\n", note);
     return prepared;
 }
 

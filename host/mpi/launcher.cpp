@@ -1,6 +1,9 @@
 #include "mpi/launcher.h"
 
 #include <cstdlib>
+#include <fmt/format.h>
+#include <sched.h>
+#include <unistd.h>
 
 namespace tristim {
 
@@ -19,6 +22,15 @@ std::optional<Launcher> find_launcher() {
             return Launcher{launcher.name, launcher.holds_size ? std::atoi(value) : 0};
     }
     return {};
+}
+
+std::string binding_note(int local_ranks) {
+    ::cpu_set_t bound;
+    const auto cores = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN));
+    if (::sched_getaffinity(0, sizeof bound, &bound) != 0 || CPU_COUNT(&bound) * local_ranks >= cores)
+        return {};
+    return fmt::format("this rank may run on {} of {} cores only: `mpirun --bind-to none` gives it all",
+                       CPU_COUNT(&bound), cores);
 }
 
 } // namespace tristim

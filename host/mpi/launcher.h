@@ -14,4 +14,8 @@ struct Launcher {
 /// None if the process was started alone.
 std::optional<Launcher> find_launcher();
 
+/// Whether the launcher has bound this process to so few cores that as many processes as are on this machine leave some
+/// idle: what to do about it, or empty.
+std::string binding_note(int local_ranks);
+
 } // namespace tristim
