@@ -123,8 +123,10 @@ void RenderCheckpoint::update(PassRenderer& renderer) {
         renderer.request_sums();
     std::optional<RenderSums> sums = renderer.requested_sums();
     requested_ = !sums;
-    if (sums)
+    if (sums) {
         save(std::move(*sums));
+        writing_seconds_ += renderer.summing_seconds();
+    }
 }
 
 nlohmann::ordered_json RenderCheckpoint::stats_json() const {

@@ -143,6 +143,7 @@ std::optional<RenderSums> JointRender::requested_sums() {
 
 /// All: the sum of what all ranks pass, at rank 0.
 RenderSums JointRender::reduced(RenderSums sums) {
+    const Stopwatch stopwatch;
     const PassRanges missing = given_.without(sums.passes);
     const std::vector<std::string> counts = ranks_.gather(counts_text(sums, missing));
     sums.film.resize(options_.region.pixels());
@@ -155,6 +156,7 @@ RenderSums JointRender::reduced(RenderSums sums) {
     for (const std::string& text : counts)
         add_counts(text, total);
     total.passes.add(earlier_);
+    summing_seconds_ = stopwatch.seconds();
     if (!holds_passes(total.film, total.passes.count()))
         fail("the ranks' sums do not hold the {} passes that they tell of", total.passes.count());
     return total;

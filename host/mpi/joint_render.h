@@ -27,6 +27,8 @@ class JointRender final : public PassRenderer {
     void request_sums() override;
     std::optional<RenderSums> requested_sums() override;
 
+    double summing_seconds() const override { return summing_seconds_; }
+
     /// All ranks call it. At rank 0 of all ranks, elsewhere of this one.
     RenderOutcome outcome() override;
 
@@ -46,6 +48,7 @@ class JointRender final : public PassRenderer {
     std::string failure_; ///< why there is no team
     PassRanges earlier_;
     double render_seconds_ = 0.0;
+    double summing_seconds_ = 0.0;
     std::unique_ptr<PassServer> server_; ///< of rank 0
     PassRanges given_;                   ///< what this rank is to do or has done
     std::uint64_t given_count_ = 0;

@@ -46,6 +46,9 @@ class PassRenderer {
     virtual void request_sums() = 0;
     virtual std::optional<RenderSums> requested_sums() = 0;
 
+    /// What it took to add up the last of them while all waited, seconds.
+    virtual double summing_seconds() const { return 0.0; }
+
     /// What the render has come to; after it.
     virtual RenderOutcome outcome() = 0;
 
