@@ -77,7 +77,7 @@ TEST(JointRender, RanksDoNotShowInTheImage) {
     EXPECT_EQ(outcome.sums.rays.photon, expected().rays.photon);
     EXPECT_EQ(outcome.statistics.passes, passes);
     EXPECT_EQ(outcome.statistics.photons_emitted, passes * 2048);
-    EXPECT_FALSE(outcome.stopped);
+    EXPECT_FALSE(outcome.stopped_elsewhere);
     ASSERT_EQ(outcome.shares.size(), 3U);
     std::uint64_t sum = 0;
     for (int rank = 0; rank < 3; ++rank) {
@@ -136,7 +136,7 @@ TEST(JointRender, AnyRankEndsItForAll) {
         const RenderOutcome outcome = render({"", "", ""}, [&](PassRenderer&, Communicator& rank, std::uint64_t done) {
             return rank.rank() != who || done < 5;
         });
-        EXPECT_TRUE(outcome.stopped) << who;
+        EXPECT_EQ(outcome.stopped_elsewhere, who != 0) << who;
         EXPECT_GE(outcome.statistics.passes, 1U) << who;
         EXPECT_LT(outcome.statistics.passes, passes) << who;
         EXPECT_TRUE(holds_passes(outcome.sums.film, outcome.sums.passes.count())) << who;

@@ -95,6 +95,20 @@ class ThreadRanks {
             all_.barrier_.arrive_and_wait();
         }
 
+        void reduce(std::vector<float>& sums) override {
+            in_turn([&] {
+                all_.sums_.resize(sums.size());
+                for (std::size_t i = 0; i < sums.size(); ++i)
+                    all_.sums_[i] += sums[i];
+            });
+            if (rank_ == 0)
+                sums.swap(all_.sums_);
+            all_.barrier_.arrive_and_wait();
+            if (rank_ == 0)
+                all_.sums_.clear();
+            all_.barrier_.arrive_and_wait();
+        }
+
         [[noreturn]] void abort(int exit_code) override { std::_Exit(exit_code); }
 
       private:
@@ -117,6 +131,7 @@ class ThreadRanks {
     std::string text_;
     std::vector<std::string> texts_;
     std::vector<FilmPixel> film_;
+    std::vector<float> sums_;
 };
 
 } // namespace tristim::test

@@ -46,6 +46,9 @@ class Communicator {
     /// All: at rank 0 replaces the film by the sum (add_film) of all ranks' films; elsewhere leaves it as it is.
     virtual void reduce(std::vector<FilmPixel>& film) = 0;
 
+    /// All: the same for plain sums.
+    virtual void reduce(std::vector<float>& sums) = 0;
+
     /// Ends all ranks at once.
     [[noreturn]] virtual void abort(int exit_code) = 0;
 };

@@ -17,8 +17,8 @@ namespace {
 
 constexpr int root = 0;
 
-/// Pixels that are reduced at a time: MPI keeps copies of so many, a few times 24 MB, and not of the whole film.
-constexpr std::size_t pixels_at_once = std::size_t{1} << 18U;
+/// What is reduced at a time: MPI keeps a few copies of so much, and not of the whole film.
+constexpr std::size_t bytes_at_once = std::size_t{24} << 20U;
 
 /// Waits until an operation is done, without the spinning of MPI_Wait: others render meanwhile.
 void wait(MPI_Request& request) {
@@ -131,13 +131,8 @@ class MpiCommunicator final : public Communicator {
         return result;
     }
 
-    void reduce(std::vector<FilmPixel>& film) override {
-        for (std::size_t begin = 0; begin < film.size(); begin += pixels_at_once) {
-            const auto count = static_cast<int>(std::min(film.size() - begin, pixels_at_once));
-            FilmPixel* const pixels = film.data() + begin;
-            MPI_Reduce(rank_ == root ? MPI_IN_PLACE : pixels, pixels, count, pixel_, add_pixels_, root, all_);
-        }
-    }
+    void reduce(std::vector<FilmPixel>& film) override { reduce(film, pixel_, add_pixels_); }
+    void reduce(std::vector<float>& sums) override { reduce(sums, MPI_FLOAT, MPI_SUM); }
 
     [[noreturn]] void abort(int exit_code) override {
         MPI_Abort(all_, exit_code);
@@ -149,6 +144,16 @@ class MpiCommunicator final : public Communicator {
         Words words;
         MPI_Request request = MPI_REQUEST_NULL;
     };
+
+    template <typename Item>
+    void reduce(std::vector<Item>& items, MPI_Datatype type, MPI_Op add) {
+        constexpr std::size_t items_at_once = bytes_at_once / sizeof(Item);
+        for (std::size_t begin = 0; begin < items.size(); begin += items_at_once) {
+            const auto count = static_cast<int>(std::min(items.size() - begin, items_at_once));
+            Item* const some = items.data() + begin;
+            MPI_Reduce(rank_ == root ? MPI_IN_PLACE : some, some, count, type, add, root, all_);
+        }
+    }
 
     void forget_sent() {
         sending_.remove_if([](Sending& sending) {

@@ -133,12 +133,14 @@ void JointRender::report(std::uint64_t done) {
 }
 
 void JointRender::request_sums() {
-    if (server_)
-        server_->request_sums();
+    if (!server_)
+        return;
+    total_.reset();
+    server_->request_sums();
 }
 
 std::optional<RenderSums> JointRender::requested_sums() {
-    return std::exchange(total_, {});
+    return total_;
 }
 
 /// All: the sum of what all ranks pass, at rank 0.
@@ -148,10 +150,13 @@ RenderSums JointRender::reduced(RenderSums sums) {
     const std::vector<std::string> counts = ranks_.gather(counts_text(sums, missing));
     sums.film.resize(options_.region.pixels());
     ranks_.reduce(sums.film);
+    sums.error.resize(options_.error_estimate ? ERROR_PLANES * options_.region.pixels() : 0);
+    ranks_.reduce(sums.error);
     if (!server_)
         return sums;
     RenderSums total;
     total.film = std::move(sums.film);
+    total.error = std::move(sums.error);
     total.passes = server_->handed_out();
     for (const std::string& text : counts)
         add_counts(text, total);
@@ -170,7 +175,7 @@ RenderOutcome JointRender::outcome() {
     outcome.sums = reduced(std::move(outcome.sums));
     for (std::size_t rank = 1; rank < parts.size(); ++rank)
         add_outcome(parts[rank], static_cast<int>(rank), outcome);
-    outcome.stopped = server_ && server_->interrupted();
+    outcome.stopped_elsewhere = server_ && server_->interrupted();
     outcome.statistics.render_seconds = render_seconds_;
     outcome.statistics.passes = outcome.sums.passes.count();
     outcome.statistics.photons_stored = outcome.sums.photons_stored;

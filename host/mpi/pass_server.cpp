@@ -27,7 +27,7 @@ void PassServer::receive(const Message& message) {
     case Topic::Report: {
         const RankReport report = report_of(message.words);
         queue_.report(rank, report.done, report.pass_seconds, stopwatch_.seconds());
-        interrupted_ |= report.interrupted;
+        interrupted_ |= report.interrupted && message.from != 0;
         if (report.needs_passes)
             needy_.push_back(message.from);
         break;
@@ -55,11 +55,10 @@ void PassServer::request_sums() {
 void PassServer::serve(bool go_on, double away) {
     if (stopped_)
         return;
-    interrupted_ |= !go_on;
     longest_away_ = std::max(longest_away_, away);
     const double now = stopwatch_.seconds();
     const bool late = seconds_ && now >= *seconds_ && queue_.done() > 0;
-    if (interrupted_ || late || queue_.ended()) {
+    if (!go_on || interrupted_ || late || queue_.ended()) {
         stopped_ = true;
         handed_out_ = queue_.handed_out();
         send_all(about(Topic::Stop));

@@ -26,7 +26,7 @@ class PassServer {
 
     std::uint64_t done() const { return queue_.done(); }
 
-    /// Whether some rank wanted no more.
+    /// Whether another rank wanted no more.
     bool interrupted() const { return interrupted_; }
 
     /// The passes that ranks had, done or not, when the last message of topic Reduce or Stop went out.

@@ -27,7 +27,7 @@ struct RenderOutcome {
     RenderStatistics statistics; ///< of all devices, passes and photons of earlier renders among them; buffers are
                                  ///< those of the first
     std::vector<DeviceShare> shares;
-    bool stopped = false; ///< because someone wanted no more
+    bool stopped_elsewhere = false; ///< because another process wanted no more
 };
 
 /// Renders the passes of an image somewhere.
@@ -42,7 +42,7 @@ class PassRenderer {
     /// the passes done by this call, from this thread.
     virtual void render(const RenderBudget& limits, const GoOn& go_on) = 0;
 
-    /// For `go_on`: has all sums saved as soon as the passes under way are done, and then gives them, once.
+    /// For `go_on`: has all sums saved as soon as the passes under way are done, and then gives them; none until then.
     virtual void request_sums() = 0;
     virtual std::optional<RenderSums> requested_sums() = 0;
 

@@ -328,7 +328,6 @@ RenderOutcome Team::outcome() {
     outcome.statistics.photons_emitted =
         outcome.statistics.passes * static_cast<std::uint64_t>(options_.photons_per_pass);
     outcome.statistics.render_seconds = render_seconds_;
-    outcome.stopped = stopping_;
     return outcome;
 }
 
