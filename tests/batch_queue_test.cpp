@@ -109,6 +109,17 @@ TEST(BatchQueue, WhatAFailedRankLostIsHandedOutAnew) {
     }
     EXPECT_EQ(queue.handed_out(), PassRanges(0, 5));
     EXPECT_EQ(queue.done(), 5U);
+    // What was on its way to a rank as it failed comes back too, and the render does not end without it.
+    BatchQueue late({0, 2}, 2);
+    EXPECT_EQ(late.take(0, 0.0, 1.0).count(), 1U);
+    EXPECT_EQ(late.take(1, 0.0, 1.0).count(), 1U);
+    late.failed(1, {});
+    late.report(0, 1, 0.1, 1.0);
+    EXPECT_FALSE(late.ended());
+    late.failed(1, {1, 2});
+    EXPECT_EQ(late.take(0, 1.0, 1.0), PassRanges(1, 2));
+    late.report(0, 2, 0.1, 1.0);
+    EXPECT_TRUE(late.ended());
     // Nobody is left: the render is over with passes undone.
     BatchQueue alone({0, 5}, 1);
     EXPECT_EQ(alone.take(0, 0.0, 1.0).count(), 1U);

@@ -4,9 +4,9 @@
 #include "test_scenes.h"
 #include "thread_ranks.h"
 
-#include <atomic>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <utility>
 
 namespace tristim::test {
 namespace {
@@ -110,10 +110,16 @@ TEST(JointRender, OthersDoWhatARankLost) {
 /// Sums that are reduced on the way hold the passes that they say, and another render goes on from them.
 TEST(JointRender, SumsOnTheWayAreWhole) {
     std::vector<RenderSums> on_the_way;
+    bool requested = false;
     const RenderOutcome outcome = render({"", "", ""}, [&](PassRenderer& joint, Communicator& rank, std::uint64_t) {
-        joint.request_sums();
-        if (std::optional<RenderSums> sums = joint.requested_sums(); sums && rank.rank() == 0)
+        if (rank.rank() != 0)
+            return true;
+        if (!std::exchange(requested, true))
+            joint.request_sums();
+        if (std::optional<RenderSums> sums = joint.requested_sums()) {
             on_the_way.push_back(std::move(*sums));
+            requested = false;
+        }
         return true;
     });
     expect_same_image(outcome.sums, expected());

@@ -78,9 +78,10 @@ void BatchQueue::failed(std::size_t rank, const PassRanges& lost) {
 }
 
 bool BatchQueue::ended() const {
-    const auto waiting = [](const Rank& rank) { return !rank.failed && rank.handed_out > rank.done; };
-    return (left_count_ == 0 && std::none_of(ranks_.begin(), ranks_.end(), waiting)) ||
-           std::all_of(ranks_.begin(), ranks_.end(), [](const Rank& rank) { return rank.failed; });
+    // A rank that has failed still hands back what was on its way to it.
+    if (std::any_of(ranks_.begin(), ranks_.end(), [](const Rank& rank) { return rank.handed_out > rank.done; }))
+        return false;
+    return left_count_ == 0 || std::all_of(ranks_.begin(), ranks_.end(), [](const Rank& rank) { return rank.failed; });
 }
 
 } // namespace tristim

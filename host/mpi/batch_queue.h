@@ -22,14 +22,15 @@ class BatchQueue {
     /// have done all that are left before it could do one; it may ask again.
     PassRanges take(std::size_t rank, double now, double batch_seconds);
 
-    /// The rank takes no more, and these of its passes are handed out anew.
+    /// The rank takes no more, and these of its passes are handed out anew. It may hand back more later, such as had
+    /// been on their way to it.
     void failed(std::size_t rank, const PassRanges& lost);
 
     /// The passes that ranks hold: those done and those to be done.
     const PassRanges& handed_out() const { return handed_out_; }
     std::uint64_t done() const { return done_; }
 
-    /// Whether all passes are done or no rank is left to do them.
+    /// Whether all passes are done, or no rank is left to do them and all have handed back what they lost.
     bool ended() const;
 
   private:

@@ -41,24 +41,26 @@ void JointRender::render(const RenderBudget& limits, const GoOn& go_on) {
     if (team_)
         team_->render_given(poll, [&](std::uint64_t done) { return step(done, go_on); });
     if (!stopped_) {
-        give_up();
-        while (step(given_count_ - lost_.count(), go_on))
+        const std::uint64_t done = give_up();
+        while (step(done, go_on))
             std::this_thread::sleep_for(poll);
     }
     render_seconds_ = stopwatch.seconds();
 }
 
-/// No device is left: hands back what is not in the sums.
-void JointRender::give_up() {
+/// No device is left: hands back what is not in the sums. How many passes are.
+std::uint64_t JointRender::give_up() {
     PassRanges held;
     if (team_) {
         team_->request_sums();
         held = team_->requested_sums()->passes;
     }
     failed_ = true;
-    lost_ = given_.without(held);
-    ranks_.send(0, words(RankReport{given_count_ - lost_.count(), 0.0, false, interrupted_}));
-    ranks_.send(0, words(Topic::Failed, lost_));
+    const PassRanges lost = given_.without(held);
+    const std::uint64_t done = given_count_ - lost.count();
+    ranks_.send(0, words(RankReport{done, 0.0, false, interrupted_}));
+    ranks_.send(0, words(Topic::Failed, lost));
+    return done;
 }
 
 bool JointRender::step(std::uint64_t done, const GoOn& go_on) {
@@ -86,12 +88,15 @@ void JointRender::follow(const Message& message) {
         const PassRanges passes = passes_of(message.words);
         given_.add(passes);
         given_count_ += passes.count();
-        team_->give(passes);
         asked_ = false;
+        if (failed_)
+            ranks_.send(0, words(Topic::Failed, passes)); // they were on their way
+        else
+            team_->give(passes);
         break;
     }
     case Topic::TakenBack:
-        given_ = given_.without(lost_);
+        given_ = given_.without(passes_of(message.words));
         break;
     case Topic::Save:
         if (team_)

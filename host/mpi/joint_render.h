@@ -39,7 +39,7 @@ class JointRender final : public PassRenderer {
     void follow(const Message& message);
     void save();
     void report(std::uint64_t done);
-    void give_up();
+    std::uint64_t give_up();
     RenderSums reduced(RenderSums sums);
 
     Communicator& ranks_;
@@ -52,7 +52,6 @@ class JointRender final : public PassRenderer {
     std::unique_ptr<PassServer> server_; ///< of rank 0
     PassRanges given_;                   ///< what this rank is to do or has done
     std::uint64_t given_count_ = 0;
-    PassRanges lost_; ///< of them, when no device was left
     std::uint64_t reported_done_ = 0;
     bool asked_ = false; ///< for passes
     bool interrupted_ = false;

@@ -32,11 +32,13 @@ void PassServer::receive(const Message& message) {
             needy_.push_back(message.from);
         break;
     }
-    case Topic::Failed:
-        queue_.failed(rank, passes_of(message.words));
+    case Topic::Failed: {
+        const PassRanges lost = passes_of(message.words);
+        queue_.failed(rank, lost);
         std::erase(needy_, message.from);
-        ranks_.send(message.from, about(Topic::TakenBack));
+        ranks_.send(message.from, words(Topic::TakenBack, lost));
         break;
+    }
     case Topic::Saved:
         --*unsaved_;
         break;

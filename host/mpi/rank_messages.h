@@ -11,10 +11,10 @@ namespace tristim {
 enum class Topic : std::uint64_t {
     Report,    ///< to rank 0: passes done in all, seconds a pass takes, whether it needs passes, whether it was
                ///< interrupted
-    Failed,    ///< to rank 0: no device is left; the passes that are lost
+    Failed,    ///< to rank 0: no device is left; passes that are lost
     Saved,     ///< to rank 0: the sums that it asked for are there
     Passes,    ///< to a rank: passes to be done
-    TakenBack, ///< to a rank that has failed: the passes that it lost are no longer its own
+    TakenBack, ///< to a rank that has failed: passes that it lost and that are no longer its own
     Save,      ///< to all: save sums
     Reduce,    ///< to all: add up the saved sums
     Stop       ///< to all: the render is over
