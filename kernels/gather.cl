@@ -254,8 +254,10 @@ void clear_gathered(Gathered* gathered) {
 }
 
 // The XYZ of Σ flux / photon paths, throughput included, and the number of photons.
-float4 finish_gathered(const Search* search, const VisiblePoint* point, const global float* pass_table, uint paths_per_pass,
-                       Gathered* gathered) {
+// Inlined, so that `gathered` stays in registers: with all effects compiled in the gather takes 0.6 of the time on PoCL.
+__attribute__((always_inline)) float4 finish_gathered(const Search* search, const VisiblePoint* point,
+                                                      const global float* pass_table, uint paths_per_pass,
+                                                      Gathered* gathered) {
     const float found = finish_sum(gathered);
     float3 flux = gathered->flux.xyz;
     if (is_single(point->slot))
