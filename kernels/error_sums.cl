@@ -3,10 +3,7 @@
 // too.
 #include "shared_types.h"
 #include "sampling.h"
-
-// Samples beyond this are left out, as in the film.
-#define LARGEST_SAMPLE 0x1p95f
-#define LARGEST_SQUARED_SAMPLE 0x1p47f
+#include "finite.h"
 
 void add_to_planes(global float* sums, uint pixels, uint pixel, int plane, float3 value) {
     global float* sum = sums + (size_t)plane * pixels + pixel;

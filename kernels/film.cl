@@ -3,11 +3,7 @@
 #include "config.h"
 #include "shared_types.h"
 #include "sampling.h"
-
-// Samples beyond this count as not finite: 2^32 of them still add up to a float.
-#define LARGEST_SAMPLE 0x1p95f
-// And the same for squares.
-#define LARGEST_SQUARED_SAMPLE 0x1p47f
+#include "finite.h"
 
 // a + b = *sum + *lost, exactly (Knuth 1997, TAOCP vol. 2, section 4.2.2, theorem B). X, Y and Z at once: half the time of one after
 // the other.

@@ -4,6 +4,11 @@
 
 #include "shared_types.h"
 
+// Samples beyond this count as not finite: 2^32 of them still add up to a float.
+#define LARGEST_SAMPLE 0x1p95f
+// And the same for squares.
+#define LARGEST_SQUARED_SAMPLE 0x1p47f
+
 // From the exponent's bits: with -cl-fast-relaxed-math a compiler may take isfinite() for true. The sign is shifted out, so that it does
 // not recognise a test of a float either.
 bool is_finite(float x) { return (as_uint(x) << 1) < 0xff000000u; }

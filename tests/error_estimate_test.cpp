@@ -173,25 +173,15 @@ TEST(ErrorEstimate, BiasIsThatOfTheSearchRadius) {
     constexpr double radius = 0.5;
     constexpr std::uint32_t passes = 16;
     constexpr std::uint32_t seeds = 24;
-    Scene scene;
-    scene.path = "plane";
-    scene.camera = look_at({0, 0, 3}, {0.0, 0.01, 0}, {0, 1, 0}, 25.0);
-    add_horizontal_square(scene, 4.0, 0.0, true, add_diffuse(scene, Spectrum::constant(0.5)));
-    Light light;
-    light.emission = Spectrum::named("stdillum-D65");
-    light.position = {0.1, -0.1, 1.5};
-    light.scale = 5.0;
-    scene.lights.push_back(light);
+    const Scene scene = plane_under_point_light({0.1, -0.1, 1.5}, 25.0);
+    const Light& light = scene.lights.front();
     RenderOptions options = small_render("tristimulus:4", small, small, 8192, radius, 4);
     options.direct_photons = true;
     options.error_estimate = true;
 
     const double squared_radius = mean_squared_radius(radius, passes);
     const auto radiance_at = [&](const V3d& p) {
-        return [&, p](double dx, double dy) {
-            const V3d towards = light.position - p - V3d(dx, dy, 0.0);
-            return 0.5 / 3.14159265358979 * light.scale * towards.z / std::pow(towards.length(), 3.0);
-        };
+        return [&, p](double dx, double dy) { return plane_radiance(light, p + V3d(dx, dy, 0.0)); };
     };
     double expected = 0.0, truth = 0.0;
     for (int i = 0; i < small * small; ++i) {

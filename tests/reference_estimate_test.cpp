@@ -214,15 +214,8 @@ TEST(ReferenceBias, IsTheBlurOfTheSearchRadius) {
     constexpr int side = 10;
     constexpr double radius = 0.6;
     constexpr int passes = 64;
-    Scene scene;
-    scene.path = "plane";
-    scene.camera = look_at({0, 0, 3}, {0.0, 0.01, 0}, {0, 1, 0}, 45.0);
-    add_horizontal_square(scene, 4.0, 0.0, true, add_diffuse(scene, Spectrum::constant(0.5)));
-    Light light;
-    light.emission = Spectrum::named("stdillum-D65");
-    light.position = {0.2, -0.1, 1.5};
-    light.scale = 5.0;
-    scene.lights.push_back(light);
+    const Scene scene = plane_under_point_light({0.2, -0.1, 1.5}, 45.0);
+    const Light& light = scene.lights.front();
     RenderOptions options = small_render("tristimulus:4", side, side, 8192, radius, 4);
     options.direct_photons = true;
 
@@ -232,10 +225,7 @@ TEST(ReferenceBias, IsTheBlurOfTheSearchRadius) {
     for (int i = 0; i < side * side; ++i) {
         const double blur = pixel_mean(scene.camera, side, side, i % side, i / side, [&](const CameraRay& ray) {
             const V3d p = at_height(ray, 0.0);
-            const auto radiance = [&](double dx, double dy) {
-                const V3d towards = light.position - p - V3d(dx, dy, 0.0);
-                return 0.5 / 3.14159265358979 * light.scale * towards.z / std::pow(towards.length(), 3.0);
-            };
+            const auto radiance = [&](double dx, double dy) { return plane_radiance(light, p + V3d(dx, dy, 0.0)); };
             return disc_mean(squared_radius, radiance) - radiance(0.0, 0.0);
         });
         for (const double component : white)

@@ -132,6 +132,24 @@ void add_horizontal_square(Scene& scene, double half_side, double z, bool up, in
     add_parallelogram(scene, {-half_side, -half_side, z}, up ? x : y, up ? y : x, material);
 }
 
+Scene plane_under_point_light(const V3d& light, double fov_degrees) {
+    Scene scene;
+    scene.path = "plane";
+    scene.camera = look_at({0, 0, 3}, {0.0, 0.01, 0}, {0, 1, 0}, fov_degrees);
+    add_horizontal_square(scene, 4.0, 0.0, true, add_diffuse(scene, Spectrum::constant(0.5)));
+    Light lamp;
+    lamp.emission = Spectrum::named("stdillum-D65");
+    lamp.position = light;
+    lamp.scale = 5.0;
+    scene.lights.push_back(lamp);
+    return scene;
+}
+
+double plane_radiance(const Light& light, const V3d& point) {
+    const V3d towards = light.position - point;
+    return 0.5 / 3.14159265358979 * light.scale * towards.z / std::pow(towards.length(), 3.0);
+}
+
 RenderOptions small_render(const std::string& method, int width, int height, int photons, double radius,
                            int max_depth) {
     RenderOptions options;

@@ -46,6 +46,12 @@ void add_sphere(Scene& scene, double radius, int subdivisions, bool vertex_norma
 /// The horizontal square |x|, |y| <= half_side at height z, facing up or down.
 void add_horizontal_square(Scene& scene, double half_side, double z, bool up, int material);
 
+/// A large horizontal plane of reflectance 0.5 at height 0, seen from above, under a point light of D65 at `light`.
+Scene plane_under_point_light(const V3d& light, double fov_degrees);
+
+/// Its radiance at a point of the plane, over the spectrum: E/π times the reflectance, E = I h/d³.
+double plane_radiance(const Light& light, const V3d& point);
+
 /// Options for a small image of a scene with an initial radius given.
 RenderOptions small_render(const std::string& method, int width, int height, int photons, double radius, int max_depth);
 

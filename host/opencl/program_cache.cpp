@@ -1,5 +1,7 @@
 #include "opencl/program_cache.h"
 
+#include "base/hash.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,21 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view magic = "tristim program 1\n";
-
-/// Fowler, Noll and Vo's hash FNV-1a, 64 bits (draft-eastlake-fnv, constants of its table). Each step is one-to-one, so
-/// that one changed byte always changes it.
-class Hash {
-  public:
-    Hash& add(std::string_view bytes) {
-        for (const char byte : bytes)
-            value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-        return *this;
-    }
-    std::uint64_t value() const { return value_; }
-
-  private:
-    std::uint64_t value_ = 0xcbf29ce484222325U;
-};
 
 std::string bytes_of(std::uint64_t value) {
     std::string bytes(8, '\0');
@@ -62,7 +49,10 @@ std::string header(const ProgramKey& key, std::uint64_t binary_size) {
 }
 
 std::string checksum(std::string_view head, std::string_view binary) {
-    return bytes_of(Hash().add(head).add(binary).value());
+    Hash hash;
+    hash.add_bytes(head);
+    hash.add_bytes(binary);
+    return bytes_of(hash.value());
 }
 
 /// A name beside `target` that no other process or thread writes to.
@@ -90,7 +80,9 @@ void ProgramCache::tell(const std::string& what) {
 }
 
 fs::path ProgramCache::file(const ProgramKey& key) const {
-    return folder_ / fmt::format("{:016x}.bin", Hash().add(to_bytes(key)).value());
+    Hash name;
+    name.add_bytes(to_bytes(key));
+    return folder_ / (name.hexadecimal() + ".bin");
 }
 
 std::optional<ProgramBinary> ProgramCache::load(const ProgramKey& key) {
