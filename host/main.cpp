@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/tell.h"
 #include "commands/bench.h"
 #include "commands/bench_film.h"
 #include "commands/bench_pass.h"
@@ -22,15 +23,29 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cstdio>
+#include <csignal>
+#include <fcntl.h>
 #include <new>
 #include <span>
 #include <string>
+#include <system_error>
+#include <unistd.h>
 
 namespace {
 
 constexpr int exit_failure = 1;
 constexpr int exit_usage = 2;
+
+/// Opens those of the standard streams that are closed: else the next file that is written would take the place of
+/// stderr, and messages would go into it.
+void open_standard_streams() {
+    int descriptor = 0;
+    do
+        descriptor = ::open("/dev/null", O_RDWR);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+    if (descriptor >= 0)
+        ::close(descriptor);
+}
 
 /// What was typed, for a shell to repeat.
 std::string command_line(int argc, char** argv) {
@@ -79,8 +94,8 @@ int run(int argc, char** argv) {
             return app.exit(error); // --help, --version
         const auto chosen = app.get_subcommands();
         tristim::at_first_rank(tristim::join_ranks(), [&] {
-            fmt::print(stderr, "tristim: {} (see 'tristim {}--help')\n", error.what(),
-                       chosen.empty() ? "" : chosen.front()->get_name() + " ");
+            tristim::tell("tristim: {} (see 'tristim {}--help')\n", error.what(),
+                          chosen.empty() ? "" : chosen.front()->get_name() + " ");
             return exit_usage;
         });
         tristim::leave_ranks();
@@ -92,6 +107,8 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+    open_standard_streams();
+    std::signal(SIGXFSZ, SIG_IGN); // a limit on the size of files makes writing fail instead
     std::string problem;
     try {
         return run(argc, argv);
@@ -103,9 +120,11 @@ int main(int argc, char** argv) {
         problem = tristim::describe_current_exception();
     } catch (const std::bad_alloc&) {
         problem = tristim::describe_current_exception();
+    } catch (const std::system_error&) { // such as of fmt::print
+        problem = tristim::describe_current_exception();
     }
     tristim::Communicator* const ranks = tristim::joined_ranks();
-    fmt::print(stderr, "tristim: {}{}\n", ranks != nullptr ? fmt::format("rank {}: ", ranks->rank()) : "", problem);
+    tristim::tell("tristim: {}{}\n", ranks != nullptr ? fmt::format("rank {}: ", ranks->rank()) : "", problem);
     if (ranks != nullptr)
         ranks->abort(exit_failure); // the others wait for this one
     return exit_failure;

@@ -1,6 +1,7 @@
 #include "commands/bench.h"
 
 #include "base/error.h"
+#include "base/tell.h"
 #include "bench/bench.h"
 #include "bench/machine.h"
 #include "bench/reference.h"
@@ -110,9 +111,9 @@ void run(const BenchCommand& command) {
     bar.finish();
     write_report(command.out);
     if (!command.quiet)
-        fmt::print(stderr, "wrote results.json, results.csv, plots and report.html in {}\n", command.out);
+        tell("wrote results.json, results.csv, plots and report.html in {}\n", command.out);
     if (!complete) {
-        fmt::print(stderr, "interrupted: what was measured is kept, --resume goes on\n");
+        tell("interrupted: what was measured is kept, --resume goes on\n");
         throw CLI::RuntimeError(exit_interrupted);
     }
 }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parse_number.h"
+#include "base/tell.h"
 #include "commands/image_output.h"
 #include "render/checkpoint.h"
 #include "render/image_metadata.h"
@@ -55,8 +56,8 @@ void merge(const MergeCommand& command) {
         fail("--aov error and bias need checkpoints of renders that had --aov or --error-target too");
     write(command.image, xyz_image(film), metadata_of(sum), estimate, sum.sums.film);
     if (!command.quiet)
-        fmt::print(stderr, "{} passes ({}); {}; {} non-finite values\n", sum.sums.passes.count(),
-                   sum.sums.passes.text(), describe(estimate), sum.sums.non_finite.total());
+        tell("{} passes ({}); {}; {} non-finite values\n", sum.sums.passes.count(), sum.sums.passes.text(),
+             describe(estimate), sum.sums.non_finite.total());
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "commands/reference.h"
 
 #include "base/error.h"
+#include "base/tell.h"
 #include "bench/reference.h"
 #include "commands/interrupt.h"
 #include "commands/parse.h"
@@ -22,15 +23,15 @@ struct ReferenceCommand {
 };
 
 void print_summary(const ReferenceCommand& command, const Reference& reference) {
-    fmt::print(stderr, "{}{}: {} passes in {:.1f} s", interrupted() ? "interrupted: " : "", command.out,
-               reference.passes, reference.seconds);
+    tell("{}{}: {} passes in {:.1f} s", interrupted() ? "interrupted: " : "", command.out, reference.passes,
+         reference.seconds);
     if (reference.passes < 2) {
-        fmt::print(stderr, "; one pass does not tell its error\n");
+        tell("; one pass does not tell its error\n");
         return;
     }
     const ReferenceSummary summary = summarise_reference(reference, {{"image", reference.image.region}});
-    fmt::print(stderr, "; error {:.3g} in XYZ (noise {:.3g}, blur of the search radius {:.3g})\n", summary.floor[0],
-               summary.noise[0], summary.bias[0]);
+    tell("; error {:.3g} in XYZ (noise {:.3g}, blur of the search radius {:.3g})\n", summary.floor[0], summary.noise[0],
+         summary.bias[0]);
 }
 
 void run(const ReferenceCommand& command) {
@@ -51,7 +52,7 @@ void run(const ReferenceCommand& command) {
     const auto progress = [&](std::uint64_t passes, double seconds) {
         if (!bar) {
             if (passes > 0 && !command.quiet)
-                fmt::print(stderr, "continuing {}: {} passes, {:.1f} s\n", command.out, passes, seconds);
+                tell("continuing {}: {} passes, {:.1f} s\n", command.out, passes, seconds);
             before = passes;
             bar.emplace(RenderBudget{{}, command.seconds - seconds}, options.photons_per_pass, command.quiet);
         }
@@ -63,9 +64,9 @@ void run(const ReferenceCommand& command) {
     if (bar)
         bar->finish(reference.passes - before);
     else if (!command.quiet)
-        fmt::print(stderr, "nothing to do: {} has {:.1f} s of rendering already\n", command.out, reference.seconds);
+        tell("nothing to do: {} has {:.1f} s of rendering already\n", command.out, reference.seconds);
     if (reference.rejected_samples > 0)
-        fmt::print(stderr, "warning: {} values were not finite and left out\n", reference.rejected_samples);
+        tell("warning: {} values were not finite and left out\n", reference.rejected_samples);
     if (!command.quiet)
         print_summary(command, reference);
 }

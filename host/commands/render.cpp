@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "base/tell.h"
 #include "commands/error_watch.h"
 #include "commands/image_output.h"
 #include "commands/interrupt.h"
@@ -102,11 +103,10 @@ bool report_failures(const RenderOutcome& outcome, const RenderBudget& limits) {
         ++failed;
         const char* kind = failed == outcome.shares.size() ? "error" : "warning";
         if (share.device.name.empty())
-            fmt::print(stderr, "{}: rank {} takes no part: {}\n", kind, share.rank, share.failure);
+            tell("{}: rank {} takes no part: {}\n", kind, share.rank, share.failure);
         else
-            fmt::print(stderr, "{}: {}device '{}' failed after {} passes: {}\n", kind,
-                       ranks ? fmt::format("rank {}'s ", share.rank) : "", share.device.name, share.passes,
-                       share.failure);
+            tell("{}: {}device '{}' failed after {} passes: {}\n", kind,
+                 ranks ? fmt::format("rank {}'s ", share.rank) : "", share.device.name, share.passes, share.failure);
     }
     return failed < outcome.shares.size() || passes_to_do(limits, outcome.sums.passes).empty();
 }
@@ -151,7 +151,7 @@ void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& devic
     options.method = choice.method;
     options.auto_method = false;
     if (!quiet && !interrupted())
-        fmt::print(stderr, "{}", describe(choice));
+        tell("{}", describe(choice));
 }
 
 /// What is known before the device does anything.
@@ -203,7 +203,7 @@ Prepared prepare(RenderCommand& command, const Communicator* ranks) {
     const bool on_cpu = (prepared.devices.front().info.type & CL_DEVICE_TYPE_CPU) != 0;
     const std::string note = ranks != nullptr && on_cpu ? binding_note(ranks->local_size()) : "";
     if (!command.quiet && !note.empty())
-        fmt::print(stderr, "note: {}\n", note);
+        tell("note: {}\n", note);
     return prepared;
 }
 
@@ -275,17 +275,16 @@ int finish(const RenderCommand& command, const Prepared& prepared, const RenderO
         replace_file(command.stats, json.dump(2) + "\n");
     }
     if (film.rejected_samples > 0)
-        fmt::print(stderr, "warning: {} values were not finite and left out: {}\n", film.rejected_samples,
-                   describe(outcome.sums.non_finite));
+        tell("warning: {} values were not finite and left out: {}\n", film.rejected_samples,
+             describe(outcome.sums.non_finite));
     std::vector<std::string> written = command.image.outfiles;
     if (prepared.checkpoint->is_wanted() && saved)
         written.push_back(prepared.checkpoint->path());
     if (!command.quiet)
-        fmt::print(stderr,
-                   "{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {}; {} non-finite values; wrote {}\n",
-                   stopped ? "interrupted: " : "", statistics.passes, describe(outcome.shares),
-                   statistics.render_seconds, statistics.build_kernels_seconds,
-                   describe(estimate, command.error_target), film.rejected_samples, fmt::join(written, ", "));
+        tell("{}{} passes on {} in {:.1f} s, {:.1f} s building kernels; {}; {} non-finite values; wrote {}\n",
+             stopped ? "interrupted: " : "", statistics.passes, describe(outcome.shares), statistics.render_seconds,
+             statistics.build_kernels_seconds, describe(estimate, command.error_target), film.rejected_samples,
+             fmt::join(written, ", "));
     if (!complete || !saved)
         return 1;
     const bool all_done = prepared.limits.passes && passes_to_do(prepared.limits, outcome.sums.passes).empty();

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/region.h"
+#include "base/tell.h"
 #include "commands/device_options.h"
 #include "commands/parse.h"
 #include "spectra/rgb_upsampling.h"
@@ -132,7 +133,7 @@ RenderOptions resolve_options(const RenderArguments& a, const Scene& scene) {
 
 void print_notes(const Scene& scene) {
     for (const std::string& note : scene.notes)
-        fmt::print(stderr, "note: {}\n", note);
+        tell("note: {}\n", note);
 }
 
 } // namespace tristim

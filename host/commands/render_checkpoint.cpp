@@ -1,6 +1,7 @@
 #include "commands/render_checkpoint.h"
 
 #include "base/error.h"
+#include "base/tell.h"
 #include "commands/parse.h"
 #include "image/output_file.h"
 

@@ -1,5 +1,6 @@
 #include "commands/report.h"
 
+#include "base/tell.h"
 #include "report/report.h"
 
 #include <fmt/format.h>
@@ -16,8 +17,7 @@ void add_report_command(CLI::App& app) {
     command->callback([folder] {
         const std::vector<std::string> missing = write_report(*folder);
         if (!missing.empty())
-            fmt::print(stderr, "note: {} images are missing and left out, the first is {}\n", missing.size(),
-                       missing.front());
+            tell("note: {} images are missing and left out, the first is {}\n", missing.size(), missing.front());
         fmt::print("wrote results.csv, plots and report.html in {}\n", *folder);
     });
 }

@@ -1,6 +1,7 @@
 #include "commands/status_line.h"
 
-#include <cstdio>
+#include "base/tell.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -21,19 +22,18 @@ bool StatusLine::due() const {
 void StatusLine::show(const std::string& line) {
     last_shown_ = elapsed();
     if (terminal_)
-        fmt::print(stderr, "{}{}", clear_line, line);
+        tell("{}{}", clear_line, line);
     else
-        fmt::print(stderr, "{}\n", line);
-    std::fflush(stderr);
+        tell("{}\n", line);
 }
 
 void StatusLine::finish(const std::string& last) {
     if (quiet_)
         return;
     if (terminal_)
-        fmt::print(stderr, "{}", clear_line);
+        tell("{}", clear_line);
     if (!last.empty())
-        fmt::print(stderr, "{}\n", last);
+        tell("{}\n", last);
 }
 
 } // namespace tristim

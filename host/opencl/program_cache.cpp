@@ -1,6 +1,7 @@
 #include "opencl/program_cache.h"
 
 #include "base/hash.h"
+#include "base/tell.h"
 
 #include <fmt/format.h>
 
@@ -172,8 +173,7 @@ fs::path program_cache_folder() {
 namespace {
 
 ProgramCache& process_cache() {
-    static ProgramCache cache(program_cache_folder(),
-                              [](const std::string& what) { fmt::print(stderr, "note: {}\n", what); });
+    static ProgramCache cache(program_cache_folder(), [](const std::string& what) { tell("note: {}\n", what); });
     return cache;
 }
 
