@@ -2,9 +2,11 @@
 
 namespace tristim {
 
-/// From now on the first SIGINT or SIGTERM only sets interrupted(); a second one ends the process as usual. Where the
-/// process is one of several ranks, SIGUSR1 and SIGUSR2 do so too: mpirun passes them on and leaves it at that. And a
-/// limit on the size of files makes writing fail instead of ending the process.
+/// From now on the first SIGINT, SIGTERM or SIGHUP only sets interrupted(); one that follows half a second later or
+/// more ends the process as usual. Before that it counts as the same: `timeout` sends one to the process and one to its
+/// group, and some launchers do so too. Where SIGHUP was ignored (nohup) it stays so. Where the process is one of
+/// several ranks, SIGUSR1 and SIGUSR2 set interrupted() too: mpirun passes them on and leaves it at that. And a closed
+/// pipe makes writing fail instead of ending the process.
 void catch_interrupts(bool among_ranks = false);
 bool interrupted();
 

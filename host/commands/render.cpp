@@ -312,10 +312,10 @@ void add_render_command(CLI::App& app) {
     auto command = std::make_shared<RenderCommand>();
     command->arguments.accepts_auto = true;
     CLI::App* sub = app.add_subcommand("render", "Render a scene to EXR and PNG images");
-    sub->footer(
-        fmt::format("Ctrl-C and SIGTERM end a render after the passes under way, which are saved as any others; "
-                    "the exit status is {} then. A second one ends it at once.",
-                    exit_interrupted_and_saved));
+    sub->footer(fmt::format(
+        "Ctrl-C, SIGTERM and SIGHUP end a render after the passes under way, which are saved as any others; "
+        "the exit status is {} then. Another one after half a second or more ends it at once.",
+        exit_interrupted_and_saved));
     add_render_arguments(*sub, command->arguments);
     add_image_output(*sub, command->image, "Image to write, may be repeated [the scene's film filename]");
     auto* passes = sub->add_option("--passes", command->passes,
