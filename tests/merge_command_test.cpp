@@ -47,6 +47,38 @@ TEST(MergeCommand, ARenderInPiecesIsTheWholeImage) {
     };
     refused({path("c.exr"), path("a.exr"), path("a.exr"), "--outfile", path("no.exr")}, "both hold the passes 0:3");
     refused({path("a.exr"), "--checkpoint", path("c.exr")}, "is there already");
+    refused({path("a.exr"), "--checkpoint", path("no.exr"), "--outfile", path("./no.exr")}, "a checkpoint is there");
+    refused({path("a.exr"), "--checkpoint", path("no.exr"), "--outfile", path("i.exr"), "--aov=error"}, "--aov error");
+}
+
+/// Renders with and without the sums that errors are estimated from.
+TEST(MergeCommand, WhereSomeTellNoErrorTheWholeDoesNot) {
+    const CheckpointRenders renders;
+    const std::string with = renders.path("with.exr"), without = renders.path("without.exr");
+    renders.render({without, {}, {}}, {3, {}, 20});
+    ASSERT_EQ(run_tristim(renders.command({"--passes=16", "--checkpoint", with, "--aov=error", "--quiet"})).exit_code,
+              0);
+    for (const auto& [first, second] : {std::pair(with, without), std::pair(without, with)}) {
+        const ChildResult merged =
+            run_tristim({"merge", first, second, "--outfile", renders.path("all.png"), "--quiet"});
+        EXPECT_EQ(merged.exit_code, 0);
+        EXPECT_NE(merged.standard_error.find("warning: the error of all passes cannot be estimated"), std::string::npos)
+            << merged.standard_error;
+        EXPECT_NE(merged.standard_error.find(": " + without + "\n"), std::string::npos) << merged.standard_error;
+    }
+}
+
+/// A limit on the size of files ends no process halfway through a file.
+TEST(MergeCommand, AFileThatMustNotGrowIsNotThere) {
+    const CheckpointRenders renders;
+    renders.render({renders.path("a.exr"), {}, {}}, {1, {}});
+    const std::string out = renders.path("out");
+    std::filesystem::create_directory(out);
+    const ChildResult result = run_program("/bin/sh", {"-c", "ulimit -f 1; exec \"$@\"", "sh", TRISTIM_COMMAND, "merge",
+                                                       renders.path("a.exr"), "--checkpoint", out + "/b.exr"});
+    EXPECT_EQ(result.exit_code, 1) << result.standard_error;
+    EXPECT_EQ(result.standard_error, "tristim: cannot write \"" + out + "/b.exr\": File too large\n");
+    EXPECT_TRUE(std::filesystem::is_empty(out));
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "render/checkpoint.h"
 #include "render/image_metadata.h"
 
+#include <fmt/ranges.h>
 #include <memory>
 
 namespace tristim {
@@ -45,15 +46,30 @@ void merge(const MergeCommand& command) {
     if (!command.checkpoint.empty())
         check_new_checkpoint(command.checkpoint);
     Checkpoint sum = read_checkpoint(command.files.front());
-    for (std::size_t i = 1; i < command.files.size(); ++i)
-        add_checkpoint(sum, command.files.front(), read_checkpoint(command.files[i]), command.files[i],
-                       command.any_radii);
-    if (!command.checkpoint.empty())
-        write_checkpoint(command.checkpoint, sum);
+    std::vector<std::string> without_error_sums;
+    const auto look_for_error_sums = [&](const Checkpoint& part, const std::string& file) {
+        if (part.sums.error.empty())
+            without_error_sums.push_back(file);
+    };
+    look_for_error_sums(sum, command.files.front());
+    for (std::size_t i = 1; i < command.files.size(); ++i) {
+        const Checkpoint more = read_checkpoint(command.files[i]);
+        look_for_error_sums(more, command.files[i]);
+        add_checkpoint(sum, command.files.front(), more, command.files[i], command.any_radii);
+    }
+    if (!without_error_sums.empty() && without_error_sums.size() < command.files.size())
+        tell(
+            "warning: the error of all passes cannot be estimated: these were rendered without --aov error, --aov bias "
+            "and --error-target: {}\n",
+            fmt::join(without_error_sums, ", "));
     const FilmImage film = develop_film(sum.sums.film, sum.width, sum.height, sum.region);
     const ErrorEstimate estimate = estimate_error(sum.sums, sum.region.width);
     if (wants_error_estimate(command.image) && !estimate.complete)
         fail("--aov error and bias need checkpoints of renders that had --aov or --error-target too");
+    if (!command.checkpoint.empty()) {
+        check_new_checkpoint(command.checkpoint); // another process may have written it meanwhile
+        write_checkpoint(command.checkpoint, sum);
+    }
     write(command.image, xyz_image(film), metadata_of(sum), estimate, sum.sums.film);
     if (!command.quiet)
         tell("{} passes ({}); {}; {} non-finite values\n", sum.sums.passes.count(), sum.sums.passes.text(),
