@@ -362,6 +362,26 @@ TEST(ImageFiles, WritableIsCheckedBeforehand) {
     EXPECT_NO_THROW(check_writable(folder.path("new.exr")));
     EXPECT_FALSE(std::filesystem::exists(folder.path("new.exr")));
     EXPECT_NO_THROW(check_writable("no-folder-in-the-path.exr"));
+    // What only an attempt shows: there is no room for the temporary file's longer name, or /proc takes no files.
+    expect_error(folder.path(std::string(250, 'a') + ".exr"), "File name too long");
+    expect_error("/proc/a.exr", "cannot write \"/proc/a.exr\": ");
+    EXPECT_EQ(names_in(folder.path(".")), (std::vector<std::string>{"file", "folder.exr", "old.PNG", "pipe.png"}));
+}
+
+TEST(ImageFiles, ALinkToAFileThatIsNotThereYetStays) {
+    const SceneFolder folder;
+    std::filesystem::create_directory(folder.path("elsewhere"));
+    std::filesystem::create_symlink("elsewhere/b.exr", folder.path("a.exr"));
+    std::filesystem::create_symlink(folder.path("a.exr"), folder.path("link.exr"));
+    EXPECT_TRUE(is_same_file(folder.path("link.exr"), folder.path("./elsewhere/../elsewhere/b.exr")));
+    EXPECT_FALSE(is_same_file(folder.path("link.exr"), folder.path("b.exr")));
+    EXPECT_FALSE(is_same_file(folder.path("b.exr"), ""));
+    replace_file(folder.path("link.exr"), "bytes");
+    EXPECT_EQ(bytes_of(folder.path("elsewhere/b.exr")), "bytes");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path("a.exr")));
+    std::filesystem::create_symlink("loop.exr", folder.path("loop.exr"));
+    EXPECT_NE(error_of([&] { replace_file(folder.path("loop.exr"), "bytes"); }).find("symbolic links"),
+              std::string::npos);
 }
 
 TEST(ImageFiles, WritingToAMissingFolderFails) {

@@ -1,11 +1,13 @@
 #include "commands/image_output.h"
 
 #include "base/error.h"
+#include "image/output_file.h"
 #include "render/checkpoint.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fmt/ranges.h>
 #include <strings.h>
 
 namespace tristim {
@@ -59,7 +61,7 @@ void check(const ImageOutput& output, const std::string& checkpoint) {
         fail("--exposure must be a finite number of stops");
     for (const std::string& path : output.outfiles) {
         check_writable(path);
-        if (path == checkpoint || is_checkpoint(path))
+        if (is_same_file(path, checkpoint) || is_checkpoint(path))
             fail("cannot write an image to \"{}\": a checkpoint is there, or will be", path);
     }
     if (!output.aov.empty() && std::none_of(output.outfiles.begin(), output.outfiles.end(), is_exr))
@@ -86,12 +88,19 @@ void write(const ImageOutput& output, const XyzImage& image, const ImageMetadata
     const ColourSpace space = output.space == "xyz" ? ColourSpace::CieXyz : ColourSpace::Srgb;
     const ToneMapping tone_mapping{
         output.tone_mapping == "linear" ? ToneMapping::Kind::Linear : ToneMapping::Kind::Photographic, output.exposure};
+    std::vector<std::string> failures;
     for (const std::string& path : output.outfiles) {
-        if (is_exr(path))
-            write_exr(path, image, space, with_estimate(metadata, estimate), layers, planes);
-        else
-            write_png(path, image, tone_mapping);
+        try {
+            if (is_exr(path))
+                write_exr(path, image, space, with_estimate(metadata, estimate), layers, planes);
+            else
+                write_png(path, image, tone_mapping);
+        } catch (const Error& failure) {
+            failures.emplace_back(failure.what());
+        }
     }
+    if (!failures.empty())
+        fail("{}", fmt::join(failures, "; "));
 }
 
 } // namespace tristim

@@ -27,8 +27,8 @@ void add_image_output(CLI::App& command, ImageOutput& output, const std::string&
 /// `checkpoint`, the path where one will be or ""; changes nothing.
 void check(const ImageOutput& output, const std::string& checkpoint);
 
-/// Writes all files; EXR files with the channels that were asked for, and with the estimate in the header. Throws
-/// Error.
+/// Writes all files; EXR files with the channels that were asked for, and with the estimate in the header. Throws Error
+/// if some cannot be written, after those that can.
 void write(const ImageOutput& output, const XyzImage& image, const ImageMetadata& metadata,
            const ErrorEstimate& estimate, const std::vector<FilmPixel>& film);
 

@@ -164,6 +164,16 @@ struct Prepared {
     double load_seconds = 0.0;
 };
 
+/// Throws Error if the file for --stats cannot be written, or is that of something else.
+void check_stats(const RenderCommand& command, const std::string& checkpoint) {
+    check_output_file(command.stats);
+    const auto is_stats = [&](const std::string& path) { return is_same_file(path, command.stats); };
+    if (is_stats(checkpoint) || is_checkpoint(command.stats))
+        fail("cannot write statistics to \"{}\": a checkpoint is there, or will be", command.stats);
+    if (std::any_of(command.image.outfiles.begin(), command.image.outfiles.end(), is_stats))
+        fail("cannot write statistics to \"{}\": an image will be there", command.stats);
+}
+
 Prepared prepare(RenderCommand& command, const Communicator* ranks) {
     const bool first = ranks == nullptr || ranks->rank() == 0;
     const Stopwatch loading;
@@ -183,7 +193,7 @@ Prepared prepare(RenderCommand& command, const Communicator* ranks) {
     if (first) {
         check(command.image, prepared.checkpoint->path());
         if (!command.stats.empty())
-            check_output_file(command.stats);
+            check_stats(command, prepared.checkpoint->path());
     } else {
         command.quiet = true;
         command.error_target.reset();

@@ -21,11 +21,6 @@ bool exists(const std::string& path) {
     return std::filesystem::exists(path, ignored);
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-    std::error_code ignored;
-    return a == b || std::filesystem::equivalent(a, b, ignored);
-}
-
 } // namespace
 
 void add_checkpoint_options(CLI::App& command, CheckpointArguments& arguments) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <random>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -22,18 +23,24 @@ namespace fs = std::filesystem;
     fail("cannot write \"{}\": {}", path, reason);
 }
 
-/// Where the bytes go: the target of a symbolic link, or the path itself.
-fs::path final_path(const std::string& path) {
-    std::error_code error;
-    const fs::path target = fs::weakly_canonical(path, error);
-    return error || !fs::is_symlink(path, error) ? fs::path(path) : target;
-}
-
 fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// Of temporary files' names, a process's number follows.
+/// Where the bytes go: what symbolic links lead to, be it there or not, or the path itself.
+fs::path final_path(const std::string& path) {
+    constexpr int most_links = 40; // as Linux follows
+    fs::path target = path;
+    std::error_code error;
+    for (int links = 0; fs::is_symlink(target, error); ++links) {
+        if (links == most_links)
+            fail_to_write(path, "too many levels of symbolic links");
+        target = folder_of(target) / fs::read_symlink(target, error); // an absolute one replaces the folder
+    }
+    return target;
+}
+
+/// Of temporary files' names, a number follows.
 std::string temporary_prefix(const fs::path& target) {
     return fmt::format(".{}.tmp", target.filename().string());
 }
@@ -52,8 +59,9 @@ class TemporaryFile {
   public:
     TemporaryFile(const fs::path& target, std::string user_path)
         : user_path_(std::move(user_path)), target_(target),
-          name_(folder_of(target) / fmt::format("{}{}", temporary_prefix(target), ::getpid())),
-          descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
+          // A process's number would not do: other machines and containers that write to the folder have it too.
+          name_(folder_of(target) / fmt::format("{}{}", temporary_prefix(target), std::random_device()())),
+          descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
         if (descriptor_ < 0)
             fail_to_write(user_path_, std::strerror(errno));
     }
@@ -106,9 +114,8 @@ class TemporaryFile {
     bool renamed_ = false;
 };
 
-} // namespace
-
-void check_output_file(const std::string& path) {
+/// What can be told without an attempt, in words that say more than an error code.
+void check_place(const std::string& path) {
     const fs::path target = final_path(path);
     const fs::path folder = folder_of(target);
     std::error_code ignored;
@@ -120,7 +127,7 @@ void check_output_file(const std::string& path) {
         fail_to_write(path, fmt::format("\"{}\" is not a folder", folder.string()));
     if (fs::is_directory(target, ignored))
         fail_to_write(path, "it is a folder");
-    if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
+    if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
         fail_to_write(path, "it is not a regular file");
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
         fail_to_write(path,
@@ -129,8 +136,26 @@ void check_output_file(const std::string& path) {
         fail_to_write(path, std::strerror(errno));
 }
 
+} // namespace
+
+void check_output_file(const std::string& path) {
+    check_place(path);
+    // Other reasons show only in an attempt: /proc, names too long for the temporary file, no inodes left, …
+    const TemporaryFile attempt(final_path(path), path);
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    const auto place = [](const std::string& path) {
+        std::error_code ignored;
+        const fs::path target = final_path(path);
+        return fs::weakly_canonical(folder_of(target), ignored) / target.filename();
+    };
+    std::error_code ignored;
+    return a == b || fs::equivalent(a, b, ignored) || (!a.empty() && !b.empty() && place(a) == place(b));
+}
+
 void replace_file(const std::string& path, std::span<const unsigned char> bytes) {
-    check_output_file(path);
+    check_place(path);
     TemporaryFile file(final_path(path), path);
     file.write(bytes);
     file.replace_target();

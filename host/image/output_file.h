@@ -6,9 +6,12 @@
 
 namespace tristim {
 
-/// Throws Error if a file cannot be written at `path`: its folder is missing or not writable, or something other than a
-/// writable file stands there. Meant for the start of a long computation; changes nothing.
+/// Throws Error if a file cannot be written at `path`: its folder is missing or takes no new file, or something other
+/// than a writable file stands there. Meant for the start of a long computation; what is there stays as it is.
 void check_output_file(const std::string& path);
+
+/// Whether both lead to one file, be it there already or not.
+bool is_same_file(const std::string& a, const std::string& b);
 
 /// Makes a folder and those above it, if they are missing. Throws Error.
 void make_folder(const std::string& path);
