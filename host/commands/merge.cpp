@@ -4,6 +4,7 @@
 #include "base/parse_number.h"
 #include "base/tell.h"
 #include "commands/image_output.h"
+#include "commands/parse.h"
 #include "render/checkpoint.h"
 #include "render/image_metadata.h"
 
@@ -87,7 +88,8 @@ void add_merge_command(CLI::App& app) {
         ->type_name("CHECKPOINT.exr");
     add_image_output(*sub, command->image, "Image to write, may be repeated");
     sub->add_option("--checkpoint", command->checkpoint, "New file for the sums, for render --resume or another merge")
-        ->type_name("FILE.exr");
+        ->type_name("FILE.exr")
+        ->check(not_empty());
     sub->add_flag("--any-radii", command->any_radii,
                   "Add up passes although devices measured other initial radii. The image is as right, but not the "
                   "bits that one device would render");

@@ -35,6 +35,11 @@ std::array<int, 2> parse_resolution(const std::string& text, const std::array<in
          text);
 }
 
+CLI::Validator not_empty() {
+    return {[](const std::string& text) { return text.empty() ? std::string("its value is empty") : std::string(); },
+            ""};
+}
+
 void check_seconds(double seconds, const std::string& option) {
     if (!(seconds > 0.0 && std::isfinite(seconds)))
         fail("{} must be a positive number of seconds", option);

@@ -334,6 +334,7 @@ void add_render_command(CLI::App& app) {
     sub->add_option("--pass-range", command->pass_range,
                     "Render only passes A to B - 1 of an image, see `tristim merge`")
         ->type_name("A:B")
+        ->check(not_empty())
         ->excludes(passes);
     add_checkpoint_options(*sub, command->checkpoint);
     sub->add_option("--time", command->seconds, "Seconds to render; with --passes, the first reached ends the render");
@@ -343,7 +344,9 @@ void add_render_command(CLI::App& app) {
            "whichever is first. The RMSE is over pixels and X, Y, Z, as `tristim compare` has it, divided by the "
            "mean Y of the image; noise and the search radius's bias count")
         ->type_name("X");
-    sub->add_option("--stats", command->stats, "Write times, rays and memory as JSON")->type_name("FILE.json");
+    sub->add_option("--stats", command->stats, "Write times, rays and memory as JSON")
+        ->type_name("FILE.json")
+        ->check(not_empty());
     sub->add_flag("--quiet", command->quiet, "No progress, notes or summary; errors still show");
     sub->callback([command] { run(*command); });
 }

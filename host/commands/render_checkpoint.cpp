@@ -27,12 +27,14 @@ void add_checkpoint_options(CLI::App& command, CheckpointArguments& arguments) {
     command
         .add_option("--checkpoint", arguments.checkpoint,
                     "Save now and then, and at the end, what --resume goes on from and `tristim merge` adds up")
-        ->type_name("FILE.exr");
+        ->type_name("FILE.exr")
+        ->check(not_empty());
     command
         .add_option("--resume", arguments.resume,
                     "Go on from a checkpoint, and save to it unless --checkpoint names another file; "
                     "if both name one file, it need not be there yet")
-        ->type_name("FILE.exr");
+        ->type_name("FILE.exr")
+        ->check(not_empty());
     command
         .add_option("--every", arguments.every,
                     fmt::format("Seconds between checkpoints [{}, or {} times what saving takes if that is more]",
