@@ -74,9 +74,14 @@ TEST(Checkpoint, EveryBitComesBack) {
     const SceneFolder folder;
     for (const Region& region : {Region{0, 0, 40, 30}, Region{7, 3, 21, 17}, Region{39, 29, 1, 1}}) {
         const Checkpoint written = random_checkpoint(static_cast<unsigned>(region.x), region);
-        write_checkpoint(folder.path("a.exr"), written);
-        expect_same(read_checkpoint(folder.path("a.exr")), written);
+        const std::string checksum = write_checkpoint(folder.path("a.exr"), written);
+        const Checkpoint read = read_checkpoint(folder.path("a.exr"));
+        expect_same(read, written);
+        EXPECT_EQ(read.checksum, checksum);
+        EXPECT_EQ(checksum_in(folder.path("a.exr")), checksum);
     }
+    EXPECT_EQ(checksum_in(folder.write("b.exr", "no checkpoint, but as long as a checksum and more than that")), "");
+    EXPECT_EQ(checksum_in(folder.path("none.exr")), "");
     Checkpoint without_passes = random_checkpoint(5, {0, 0, 2, 2});
     without_passes.sums.passes = {};
     write_checkpoint(folder.path("a.exr"), without_passes);

@@ -10,6 +10,7 @@
 #include <random>
 #include <sys/resource.h>
 #include <thread>
+#include <utility>
 
 namespace tristim::test {
 namespace {
@@ -174,6 +175,48 @@ TEST_F(ResumeCommand, WhatCannotBeResumedIsRefused) {
     EXPECT_EQ(renders.render({path("new.exr"), path("new.exr"), {}}, {2, {}}).passes, PassRanges(0, 2));
     EXPECT_EQ(renders.render({path("new.exr"), path("new.exr"), {}}, {3, {}}).passes, PassRanges(0, 3));
     EXPECT_EQ(read_checkpoint(path("new.exr")).sums.passes, PassRanges(0, 3));
+}
+
+/// By whatever name: nothing replaces a checkpoint but the render that goes on from it.
+TEST_F(ResumeCommand, NoOtherFileTakesTheCheckpointsPlace) {
+    const std::string checkpoint = path("a.exr"), alias = path("./a.exr");
+    const auto refused = [&](const std::vector<std::string>& arguments, int status, const std::string& words) {
+        const ChildResult result = run_tristim(renders.command(arguments));
+        EXPECT_EQ(result.exit_code, status) << words;
+        EXPECT_NE(result.standard_error.find(words), std::string::npos) << result.standard_error;
+        EXPECT_FALSE(std::filesystem::exists(path("image.exr")));
+    };
+    refused({"--checkpoint", checkpoint, "--outfile", alias}, 1, "cannot write an image to \"" + alias);
+    refused({"--checkpoint", checkpoint, "--stats", alias}, 1, "cannot write statistics to \"" + alias);
+    refused({"--stats", path("./image.exr")}, 1, "an image will be there");
+    EXPECT_FALSE(std::filesystem::exists(checkpoint));
+    // A script's variable that was never set.
+    refused({"--checkpoint", ""}, 2, "--checkpoint: its value is empty");
+    refused({"--resume", ""}, 2, "--resume: its value is empty");
+    refused({"--pass-range", ""}, 2, "--pass-range: its value is empty");
+}
+
+/// Two renders with one command line, such as a job that a scheduler starts again while the first still runs.
+TEST_F(ResumeCommand, WhatAnotherProcessHasSavedMeanwhileStays) {
+    const std::string checkpoint = path("a.exr");
+    for (const std::uint64_t begun : {0U, 2U}) {
+        if (begun > 0)
+            renders.render({checkpoint, checkpoint, {}}, {begun, {}});
+        bool other_done = false;
+        testing::internal::CaptureStderr();
+        const RenderSums sums = renders.render({checkpoint, checkpoint, {}}, {begun + 3, {}}, [&] {
+            if (!std::exchange(other_done, true))
+                renders.render({checkpoint, checkpoint, {}}, {begun + 9, {}});
+        });
+        const std::string told = testing::internal::GetCapturedStderr();
+        EXPECT_EQ(told,
+                  fmt::format("warning: no checkpoint of {} passes: another process has written \"{}\" meanwhile, "
+                              "and what it saved stays there\n",
+                              begun + 3, checkpoint));
+        EXPECT_EQ(sums.passes.count(), begun + 3);
+        EXPECT_EQ(read_checkpoint(checkpoint).sums.passes.count(), begun + 9);
+        std::filesystem::remove(checkpoint);
+    }
 }
 
 } // namespace

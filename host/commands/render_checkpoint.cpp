@@ -56,8 +56,10 @@ RenderCheckpoint::RenderCheckpoint(const CheckpointArguments& arguments)
         state_ = read_checkpoint(resume_path_);
         resumed_ = state_.sums.passes;
         resumed_seconds_ = state_.seconds;
-        if (one_file)
+        if (one_file) {
             written_ = resumed_;
+            checksum_ = state_.checksum;
+        }
     }
     if (path_.empty())
         return;
@@ -139,12 +141,15 @@ bool RenderCheckpoint::save(RenderSums sums) {
     state_.sums = std::move(sums);
     state_.seconds = resumed_seconds_ + stopwatch_.seconds();
     try {
-        write_checkpoint(path_, state_);
+        if (exists(path_) && checksum_in(path_) != checksum_)
+            fail("another process has written \"{}\" meanwhile, and what it saved stays there", path_);
+        checksum_ = write_checkpoint(path_, state_);
         written_ = state_.sums.passes;
         ++times_written_;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "warning: no checkpoint of {} passes: {}{}\n", state_.sums.passes.count(), error.what(),
-                   written_.empty() ? "" : fmt::format("; that of {} passes is still there", written_.count()));
+        const bool still_there = !written_.empty() && checksum_in(path_) == checksum_;
+        tell("warning: no checkpoint of {} passes: {}{}\n", state_.sums.passes.count(), error.what(),
+             still_there ? fmt::format("; that of {} passes is still there", written_.count()) : "");
         written = false;
     }
     state_.sums = {};

@@ -49,7 +49,7 @@ class RenderCheckpoint {
     void update(PassRenderer& renderer);
 
     /// Writes the file unless it holds just these passes. Whether it could be written (which it need not, if none is
-    /// wanted); if not, stderr tells why.
+    /// wanted); if not, stderr tells why. What another process has written there meanwhile is not replaced.
     bool save(RenderSums sums);
 
     /// How often the file was written and what that took, for --stats.
@@ -67,7 +67,8 @@ class RenderCheckpoint {
     Checkpoint state_; ///< without sums once they were handed to the team
     PassRanges resumed_;
     double resumed_seconds_ = 0.0;
-    PassRanges written_; ///< in the file
+    PassRanges written_;   ///< in the file
+    std::string checksum_; ///< of the file as this render knows it
     Stopwatch stopwatch_;
     double written_at_ = 0.0;      ///< on the stopwatch
     double writing_seconds_ = 0.0; ///< the last time

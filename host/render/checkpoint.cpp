@@ -31,7 +31,8 @@ constexpr std::size_t header_bytes = 1U << 16U; ///< among them the mark stands
 /// Stands before the checksum, at the file's very end.
 constexpr std::string_view trailer = "\ntristim checksum ";
 constexpr std::size_t checksum_digits = 16;
-constexpr std::size_t word = 4; ///< bytes of a value
+constexpr std::size_t end_bytes = trailer.size() + checksum_digits + 1; ///< of both and the last line's end
+constexpr std::size_t word = 4;                                         ///< bytes of a value
 
 /// One channel: a four-byte member of each of the structs in a row.
 struct Plane {
@@ -165,18 +166,23 @@ bool has_mark(std::string_view bytes) {
     return bytes.substr(0, header_bytes).find(mark) != std::string_view::npos;
 }
 
-/// The file's bytes without the checksum, which is theirs.
-std::string checked_bytes(const std::string& path) {
+struct CheckedBytes {
+    std::string bytes; ///< without the checksum
+    std::string checksum;
+};
+
+/// What the file holds, and its checksum is that of.
+CheckedBytes checked_bytes(const std::string& path) {
     std::string bytes = read_whole_file(path);
     if (!has_mark(bytes))
         fail("cannot use \"{}\" as a checkpoint: it was not written by tristim's --checkpoint", path);
-    const std::size_t end = bytes.size() - std::min(bytes.size(), trailer.size() + checksum_digits + 1);
+    const std::size_t end = bytes.size() - std::min(bytes.size(), end_bytes);
     const std::string_view rest = std::string_view(bytes).substr(end);
-    if (!rest.starts_with(trailer) ||
-        rest.substr(trailer.size()) != checksum(std::string_view(bytes).substr(0, end)) + "\n")
+    const std::string sum = checksum(std::string_view(bytes).substr(0, end));
+    if (!rest.starts_with(trailer) || rest.substr(trailer.size()) != sum + "\n")
         fail_damaged(path);
     bytes.resize(end);
-    return bytes;
+    return {std::move(bytes), sum};
 }
 
 /// The texts of a header. OpenImageIO leaves out those that are empty.
@@ -229,7 +235,7 @@ void copy_words(std::byte* to, std::size_t to_stride, const std::byte* from, std
 
 } // namespace
 
-void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
+std::string write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
     // Planes are for reading as well; here they are only read from.
     const std::vector<Plane> planes = planes_of(const_cast<Checkpoint&>(checkpoint));
     const std::size_t pixels = checkpoint.sums.film.size(), stride = planes.size() * word;
@@ -237,13 +243,14 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
     for (std::size_t p = 0; p < planes.size(); ++p)
         copy_words(values.data() + p * word, stride, planes[p].first, planes[p].stride, pixels);
     std::vector<unsigned char> bytes = encode(spec_of(checkpoint, planes), values);
-    const std::string end = fmt::format("{}{}\n", trailer, checksum(view(bytes)));
+    const std::string sum = checksum(view(bytes)), end = fmt::format("{}{}\n", trailer, sum);
     bytes.insert(bytes.end(), end.begin(), end.end());
     replace_file(path, bytes);
+    return sum;
 }
 
 Checkpoint read_checkpoint(const std::string& path) {
-    const std::string bytes = checked_bytes(path);
+    const auto [bytes, sum] = checked_bytes(path);
     OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open("memory.exr", nullptr, &memory);
     if (!input)
@@ -254,6 +261,7 @@ Checkpoint read_checkpoint(const std::string& path) {
         fail("cannot use the checkpoint \"{}\": it was written by another version of tristim", path);
 
     Checkpoint c;
+    c.checksum = sum;
     c.width = spec.full_width;
     c.height = spec.full_height;
     c.region = {spec.x, spec.y, spec.width, spec.height};
@@ -276,6 +284,17 @@ Checkpoint read_checkpoint(const std::string& path) {
         copy_words(plane.first, plane.stride, values.data() + static_cast<std::size_t>(channel) * word, stride, pixels);
     }
     return c;
+}
+
+std::string checksum_in(const std::string& path) {
+    std::error_code none;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, none);
+    std::string end(end_bytes, '\0');
+    std::ifstream file(path, std::ios::binary);
+    if (none || bytes < end_bytes || !file.seekg(static_cast<std::streamoff>(bytes - end_bytes)) ||
+        !file.read(end.data(), static_cast<std::streamsize>(end_bytes)) || !end.starts_with(trailer))
+        return {};
+    return end.substr(trailer.size(), checksum_digits);
 }
 
 bool is_checkpoint(const std::string& path) {

@@ -19,16 +19,20 @@ struct Checkpoint {
     std::string scene;    ///< file, for people
     std::string devices;  ///< names of those that rendered, for people
     double seconds = 0.0; ///< of rendering so far
+    std::string checksum; ///< of the file, where it was read from one
 };
 
 /// Writes one EXR file: each member of FilmPixel, the initial radius and the planes of error sums as a channel (32-bit
 /// floats and unsigned integers, so that every bit is kept), the rest in the header; behind them a checksum over the
-/// file. It is replaced as a whole or not at all. Throws Error.
-void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
+/// file, which is returned. It is replaced as a whole or not at all. Throws Error.
+std::string write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
 
 /// Throws Error if the file is missing, is no checkpoint, is not what write_checkpoint wrote bit for bit, or was
 /// written by a version that wrote others.
 Checkpoint read_checkpoint(const std::string& path);
+
+/// The checksum that stands in a file, be it right or not; empty if there is none.
+std::string checksum_in(const std::string& path);
 
 /// Whether there is such a file, be it damaged.
 bool is_checkpoint(const std::string& path);
