@@ -64,6 +64,7 @@ TEST_F(IdentityOfRenders, NamesEveryOptionThatChangesTheImage) {
         {[](O& o) { o.statistics_radius = true; }, "radius global, not statistics"},
         {[](O& o) { o.photon_roughness = 0.5; }, "photon roughness"},
         {[](O& o) { o.fast_math = true; }, "math precise, not fast"},
+        {[](O& o) { o.more_effects = parse_effects("film,point-light"); }, "extra effects none, not film"},
         {[](O& o) {
              o.region = {1, 2, 3, 4};
          },

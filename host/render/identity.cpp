@@ -1,6 +1,7 @@
 #include "render/identity.h"
 
 #include "opencl/program.h"
+#include "render/effects.h"
 #include "render/scene_identity.h"
 
 #include <algorithm>
@@ -26,6 +27,17 @@ std::string clause(const std::string& name, const std::string& is, const std::st
                        wanted.empty() ? "unknown" : wanted);
 }
 
+/// What is compiled in beside what the scene calls for.
+std::string extra_effects(const Scene& scene, const RenderOptions& options) {
+    const Effects called_for = derive_effects(scene, options.photon_roughness);
+    std::vector<std::string> names;
+    for (const EffectKind& kind : effect_table()) {
+        if (options.more_effects.*kind.flag && !(called_for.*kind.flag))
+            names.emplace_back(kind.name);
+    }
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","));
+}
+
 } // namespace
 
 RenderIdentity render_identity(const Scene& scene, const RenderOptions& options) {
@@ -47,7 +59,8 @@ RenderIdentity render_identity(const Scene& scene, const RenderOptions& options)
             {"alpha", fmt::format("{}", options.alpha)},
             {"direct light", options.direct_photons ? "photons" : "sample"},
             {"photon roughness", fmt::format("{}", options.photon_roughness)},
-            {"math", options.fast_math ? "fast" : "precise"}};
+            {"math", options.fast_math ? "fast" : "precise"},
+            {"extra effects", extra_effects(scene, options)}}; // they may round otherwise
 }
 
 std::string value_of(const RenderIdentity& identity, const std::string& name) {
