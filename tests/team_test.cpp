@@ -9,6 +9,7 @@
 #include <OpenImageIO/imageio.h>
 #include <cstring>
 #include <memory>
+#include <new>
 
 namespace tristim::test {
 namespace {
@@ -150,6 +151,13 @@ TEST(Team, GivesOutSumsWhileItRenders) {
 }
 
 /// Radii that follow each pixel's statistics are in the sums, so that passes can go on in order, and in no other.
+/// Such as for want of memory. The devices' threads end first, and what they have done can still be had.
+TEST(Team, WhatGoOnThrowsComesOut) {
+    Team team(load_scene(scene_path), options(), devices({"", ""}));
+    EXPECT_THROW(team.render({1000000, {}}, [](std::uint64_t) -> bool { throw std::bad_alloc(); }), std::bad_alloc);
+    EXPECT_TRUE(holds_passes(team.outcome().sums.film, team.outcome().statistics.passes));
+}
+
 TEST(Team, StatisticsRadiiGoOn) {
     RenderOptions statistics = options();
     statistics.statistics_radius = true;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <thread>
 
 namespace tristim {
@@ -147,12 +148,18 @@ void Team::run(const std::optional<double>& seconds, std::chrono::milliseconds p
             changed_.notify_all();
         });
     }
+    std::exception_ptr failure; // of go_on
     std::unique_lock lock(mutex_);
     while (working > 0) {
         changed_.wait_for(lock, poll);
         const std::uint64_t done = done_;
         lock.unlock();
-        const bool stop = !go_on(done);
+        bool stop = true;
+        try {
+            stop = failure || !go_on(done);
+        } catch (...) { // the threads must end first
+            failure = std::current_exception();
+        }
         lock.lock();
         stopping_ |= stop;
         if (stop)
@@ -162,6 +169,8 @@ void Team::run(const std::optional<double>& seconds, std::chrono::milliseconds p
     for (std::thread& thread : threads)
         thread.join();
     render_seconds_ = stopwatch.seconds();
+    if (failure)
+        std::rethrow_exception(failure);
 }
 
 /// What a device's thread does.
