@@ -135,6 +135,25 @@ TEST_F(Mpirun, ErrorsAreToldOnce) {
         << no_device.standard_error;
 }
 
+/// Without MPI each rank would render everything.
+TEST(WithoutMpi, SeveralRanksAreRefused) {
+    const auto joined = [](const std::map<std::string, std::string>& launcher) {
+        return run_program(WITHOUT_MPI, {}, launcher);
+    };
+    for (const auto& [launcher, words] : std::map<std::map<std::string, std::string>, std::string>{
+             {{{"OMPI_COMM_WORLD_SIZE", "2"}},
+              "Open MPI's mpirun started 2 ranks, each of which would render everything"},
+             {{{"PMI_SIZE", "4"}}, "a launcher that speaks PMI started 4 ranks, "},
+             {{{"PMIX_RANK", "0"}, {"SLURM_STEP_NUM_TASKS", "3"}}, "a launcher that speaks PMIx started 3 ranks, "}}) {
+        const ChildResult refused = joined(launcher);
+        EXPECT_EQ(refused.exit_code, 1) << words;
+        EXPECT_EQ(refused.standard_output.rfind(words, 0), 0U) << refused.standard_output;
+    }
+    for (const std::map<std::string, std::string>& alone :
+         {std::map<std::string, std::string>{}, {{"OMPI_COMM_WORLD_SIZE", "1"}}, {{"PMIX_RANK", "0"}}})
+        EXPECT_EQ(joined(alone).exit_code, 0);
+}
+
 /// SIGTERM to one of them, as a scheduler may send it; what mpirun is sent it passes on to all.
 TEST_F(Mpirun, ASignalEndsAllRanksAndSaves) {
     if (!long_tests())
