@@ -33,6 +33,7 @@ struct ChildLimits {
     std::optional<rlim_t> memory;                             ///< bytes of address space
     std::optional<std::chrono::milliseconds> interrupt_after; ///< counted from its first line on stderr
     int interrupt_signal = SIGINT;
+    std::optional<int> pending_signal; ///< sent at the start, and held back until the program catches it
 };
 
 namespace child_detail {
@@ -75,6 +76,13 @@ inline ChildResult run_program(const std::string& program, const std::vector<std
             ::setenv(name.c_str(), value.c_str(), 1);
         if (limits.file_size)
             std::signal(SIGXFSZ, SIG_IGN); // ignored signals stay so in the new program
+        if (limits.pending_signal) {
+            ::sigset_t signals;
+            sigemptyset(&signals);
+            sigaddset(&signals, *limits.pending_signal);
+            ::sigprocmask(SIG_BLOCK, &signals, nullptr);
+            std::raise(*limits.pending_signal);
+        }
         child_detail::limit(RLIMIT_FSIZE, limits.file_size);
         child_detail::limit(RLIMIT_AS, limits.memory);
         ::execv(program.c_str(), argv.data());

@@ -159,11 +159,10 @@ TEST_F(Mpirun, ASignalEndsAllRanksAndSaves) {
     if (!long_tests())
         GTEST_SKIP() << "set TRISTIM_LONG_TESTS=1";
     const std::vector<std::string> command =
-        with(render(1000000, "image.exr"), "--checkpoint", folder.path("c.exr"), "--every", "1000");
+        with(render(1000000, "image.exr"), "--checkpoint", folder.path("c.exr"), "--every", "2");
     std::future<ChildResult> running = std::async(std::launch::async, [&] { return run({"-n", "3"}, command); });
-    while (ranks_with(folder.path("c.exr")).size() < 3)
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    std::this_thread::sleep_for(std::chrono::seconds(3));
+    while (!std::filesystem::exists(folder.path("c.exr"))) // passes are under way then
+        ASSERT_EQ(running.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout) << "ended too early";
     ::kill(ranks_with(folder.path("c.exr")).back(), SIGTERM); // any one rank
     const ChildResult ended = running.get();
     EXPECT_EQ(ended.exit_code, 3) << ended.standard_error;

@@ -92,6 +92,24 @@ TEST_F(ResumeCommand, TerminatedAllIsSaved) {
     EXPECT_GT(saved.seconds, 0.0);
 }
 
+/// A signal before anything is rendered. It makes the compiler of kernels fail at times, as that does here.
+TEST_F(ResumeCommand, TerminatedDuringSetUpIsNoOtherFailure) {
+    const std::string checkpoint = path("a.exr");
+    renders.render({checkpoint, {}, {}}, {3, {}});
+    const std::string before = read_text(checkpoint);
+    ChildLimits limits;
+    limits.pending_signal = SIGTERM;
+    const std::vector<std::string> command = renders.command({"--passes=1000000", "--resume", checkpoint, "--quiet"});
+    const ChildResult failed = run_tristim(command, {{"TRISTIM_FAULT", "build:1"}}, limits);
+    EXPECT_EQ(failed.exit_code, 1);
+    EXPECT_EQ(failed.standard_error, "tristim: interrupted before the first pass was done: no image written\n");
+    EXPECT_EQ(read_text(checkpoint), before);
+    // What was resumed makes an image anyway.
+    const ChildResult stopped = run_tristim(command, {}, limits);
+    EXPECT_EQ(stopped.exit_code, 3) << stopped.standard_error;
+    EXPECT_GE(passes_in(path("image.exr")), 3);
+}
+
 /// The folder goes away: the render goes on, writes its image, and says so by its exit status.
 TEST_F(ResumeCommand, WhereTheLastCheckpointCannotBeWrittenTheStatusTells) {
     const std::string folder = path("checkpoints"), checkpoint = folder + "/a.exr";

@@ -36,12 +36,18 @@ void stop_soon_or_now(int signal) {
     stop_soon(signal);
 }
 
+::sigset_t all_caught() {
+    ::sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2})
+        sigaddset(&signals, signal);
+    return signals;
+}
+
 void handle(int signal, void (*handler)(int)) {
     struct sigaction action {};
     action.sa_handler = handler;
-    // None interrupts another's handler.
-    for (const int other : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2})
-        sigaddset(&action.sa_mask, other);
+    action.sa_mask = all_caught(); // none interrupts another's handler
     sigaction(signal, &action, nullptr);
 }
 
@@ -63,6 +69,8 @@ void catch_interrupts(bool among_ranks) {
         handle(SIGUSR2, stop_soon);
     }
     std::signal(SIGPIPE, SIG_IGN);
+    const ::sigset_t signals = all_caught(); // the process may have been started with some of them blocked
+    ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
 }
 
 bool interrupted() {

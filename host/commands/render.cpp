@@ -138,6 +138,13 @@ std::string describe(const ErrorEstimate& estimate, std::optional<double> target
            (target ? fmt::format(", {}under the target {:.2g}", estimate.rmse < *target ? "" : "not ", *target) : "");
 }
 
+constexpr const char* interrupted_early = "interrupted before the first pass was done: no image written";
+
+/// The error of a step whose failure may be but a signal's: it has PoCL's compiler remove its files, and then fail.
+std::string describe_failure() {
+    return interrupted() ? interrupted_early : describe_current_exception();
+}
+
 /// --method auto: fills in the method, and says which and why.
 void choose(const std::shared_ptr<const DeviceScene>& scene, const Device& device, const RenderBudget& budget,
             bool quiet, RenderOptions& options) {
@@ -224,7 +231,11 @@ std::shared_ptr<const DeviceScene> choose(Prepared& prepared, bool quiet, Commun
     at_first_rank(ranks, [&] {
         if (options.auto_method) {
             device_scene = std::make_shared<const DeviceScene>(prepared.scene, options, prepared.devices.front());
-            choose(device_scene, prepared.devices.front(), prepared.limits, quiet, options);
+            try {
+                choose(device_scene, prepared.devices.front(), prepared.limits, quiet, options);
+            } catch (const std::exception&) {
+                fail("{}", describe_failure());
+            }
             prepared.checkpoint->check(prepared.scene, options);
         }
         return 0;
@@ -249,9 +260,9 @@ std::unique_ptr<PassRenderer> make_renderer(Prepared& prepared, bool quiet, Comm
             team = std::make_unique<Team>(prepared.scene, prepared.options, prepared.devices, device_scene);
             prepared.checkpoint->begin(*team);
         } catch (const std::exception&) {
+            failure = describe_failure();
             if (ranks == nullptr || ranks->rank() == 0)
-                throw;
-            failure = describe_current_exception();
+                fail("{}", failure);
         }
     });
     if (ranks == nullptr)
@@ -267,7 +278,7 @@ int finish(const RenderCommand& command, const Prepared& prepared, const RenderO
     const RenderStatistics& statistics = outcome.statistics;
     const bool complete = report_failures(outcome, prepared.limits);
     if (statistics.passes == 0)
-        fail("{} before the first pass was done: no image written", stopped ? "interrupted" : "no device was left");
+        fail("{}", stopped ? interrupted_early : "no device was left before the first pass was done: no image written");
 
     const bool saved = prepared.checkpoint->save(outcome.sums);
     const FilmImage film = developed(outcome.sums, options);
