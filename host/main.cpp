@@ -93,12 +93,16 @@ int run(int argc, char** argv) {
         if (error.get_exit_code() == 0)
             return app.exit(error); // --help, --version
         const auto chosen = app.get_subcommands();
-        tristim::at_first_rank(tristim::join_ranks(), [&] {
-            tristim::tell("tristim: {} (see 'tristim {}--help')\n", error.what(),
-                          chosen.empty() ? "" : chosen.front()->get_name() + " ");
-            return exit_usage;
-        });
-        tristim::leave_ranks();
+        try {
+            // Other ranks may have been started with other arguments: it is their first step, too, that all agree upon.
+            tristim::at_all_ranks(tristim::join_ranks(), [&] {
+                tristim::fail("{} (see 'tristim {}--help')", error.what(),
+                              chosen.empty() ? "" : chosen.front()->get_name() + " ");
+            });
+        } catch (const tristim::Error& all) {
+            tristim::tell("tristim: {}\n", all.what());
+        } catch (const tristim::EndedElsewhere&) {
+        }
         return exit_usage;
     }
     return 0;

@@ -7,6 +7,7 @@
 #include "test_scenes.h"
 
 #include <OpenImageIO/imageio.h>
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -42,6 +43,11 @@ RenderOutcome render(const std::vector<std::string>& faults) {
     return team.outcome();
 }
 
+bool all_took_part(const RenderOutcome& outcome) {
+    return !outcome.shares.empty() && std::all_of(outcome.shares.begin(), outcome.shares.end(),
+                                                  [](const DeviceShare& share) { return share.passes > 0; });
+}
+
 Bits bits(const RenderOutcome& outcome) {
     return developed(outcome.sums, options()).xyz;
 }
@@ -66,7 +72,10 @@ bool same(const Bits& a, const Bits& b) {
 TEST(Team, SharingDoesNotShow) {
     const Bits expected = alone(passes);
     for (const std::size_t count : {1, 3}) {
-        const RenderOutcome outcome = render(std::vector<std::string>(count));
+        RenderOutcome outcome;
+        // On a busy machine a device may come to its first pass when all are done.
+        for (int attempt = 0; attempt < 10 && !all_took_part(outcome); ++attempt)
+            outcome = render(std::vector<std::string>(count));
         EXPECT_TRUE(same(bits(outcome), expected)) << count << " devices";
         EXPECT_EQ(outcome.statistics.passes, passes);
         EXPECT_EQ(outcome.statistics.photons_emitted, passes * 2048);

@@ -123,6 +123,8 @@ std::string describe(const std::vector<DeviceShare>& shares) {
     }
     std::map<std::string, std::pair<int, std::uint64_t>> kinds; // how many, and their passes
     for (const DeviceShare& share : shares) {
+        if (share.device.name.empty())
+            continue;
         auto& [count, passes] = kinds[share.device.name];
         ++count;
         passes += share.passes;
