@@ -8,8 +8,10 @@
 #include <bit>
 #include <csignal>
 #include <cstring>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <random>
+#include <sys/file.h>
 #include <sys/resource.h>
 
 namespace tristim::test {
@@ -152,8 +154,15 @@ TEST(Checkpoint, LeftoversOfKilledWritersGo) {
     const std::string leftover = folder.write(".a.exr.tmp4711", "half");
     const std::vector<std::string> others{folder.write(".a.exr.tmp", "x"), folder.write(".a.exr.tmp1x", "x"),
                                           folder.write(".b.exr.tmp4711", "x"), folder.write("a.exr", "x")};
+    const std::string being_written = folder.write(".a.exr.tmp4712", "half");
+    const int writer = ::open(being_written.c_str(), O_WRONLY);
+    ASSERT_EQ(::flock(writer, LOCK_EX), 0);
     remove_leftovers(path);
     EXPECT_FALSE(std::filesystem::exists(leftover));
+    EXPECT_TRUE(std::filesystem::exists(being_written));
+    ::close(writer);
+    remove_leftovers(path);
+    EXPECT_FALSE(std::filesystem::exists(being_written));
     for (const std::string& other : others)
         EXPECT_TRUE(std::filesystem::exists(other)) << other;
 }

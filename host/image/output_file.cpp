@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <random>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -45,6 +46,16 @@ std::string temporary_prefix(const fs::path& target) {
     return fmt::format(".{}.tmp", target.filename().string());
 }
 
+/// Whether a process has this temporary file open; where the file system knows no locks, it cannot be told.
+bool is_being_written(const fs::path& temporary_file) {
+    const int descriptor = ::open(temporary_file.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor < 0)
+        return false;
+    const bool locked = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    ::close(descriptor);
+    return locked;
+}
+
 /// Makes a renaming in it last. Not all file systems can, which is no reason to call a file that stands there lost.
 void flush_folder(const fs::path& folder) {
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -64,6 +75,7 @@ class TemporaryFile {
           descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
         if (descriptor_ < 0)
             fail_to_write(user_path_, std::strerror(errno));
+        static_cast<void>(::flock(descriptor_, LOCK_EX)); // until the file is closed: for remove_leftovers of others
     }
 
     ~TemporaryFile() {
@@ -167,7 +179,8 @@ void remove_leftovers(const std::string& path) {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(target), ignored)) {
         const std::string name = entry.path().filename().string();
-        if (name.starts_with(prefix) && parse_number<std::uint32_t>(std::string_view(name).substr(prefix.size())))
+        if (name.starts_with(prefix) && parse_number<std::uint32_t>(std::string_view(name).substr(prefix.size())) &&
+            !is_being_written(entry.path()))
             fs::remove(entry.path(), ignored);
     }
 }

@@ -21,8 +21,8 @@ void make_folder(const std::string& path);
 /// is replaced. Throws Error, with the temporary file removed.
 void replace_file(const std::string& path, std::span<const unsigned char> bytes);
 
-/// Removes what a process that was killed while it replaced the file may have left beside it. Not while another one
-/// writes to it.
+/// Removes what a process that was killed while it replaced the file may have left beside it, but not what another one
+/// is writing.
 void remove_leftovers(const std::string& path);
 
 /// The same as the first, with text.
