@@ -4,14 +4,17 @@
 #include "test_scenes.h"
 #include "thread_ranks.h"
 
+#include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <optional>
 #include <utility>
 
 namespace tristim::test {
 namespace {
 
 constexpr std::uint64_t passes = 60;
+constexpr int most_attempts = 10;
 
 RenderOptions options() {
     RenderOptions options = small_render("tristimulus:2", 16, 12, 2048, 0.1, 16);
@@ -68,7 +71,14 @@ RenderOutcome render(
 }
 
 TEST(JointRender, RanksDoNotShowInTheImage) {
-    const RenderOutcome outcome = render({"", "", ""});
+    RenderOutcome outcome;
+    // On a busy machine a rank may come to its first pass when all are done: then once more.
+    const auto took_part = [](const DeviceShare& share) { return share.passes > 0; };
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        outcome = render({"", "", ""});
+        if (std::all_of(outcome.shares.begin(), outcome.shares.end(), took_part))
+            break;
+    }
     expect_same_image(outcome.sums, expected());
     EXPECT_EQ(outcome.sums.passes, PassRanges(0, passes));
     EXPECT_EQ(outcome.sums.photons_stored, expected().photons_stored);
@@ -94,12 +104,18 @@ TEST(JointRender, RanksDoNotShowInTheImage) {
 TEST(JointRender, OthersDoWhatARankLost) {
     for (const std::vector<std::string>& faults :
          std::vector<std::vector<std::string>>{{"lost:100", ""}, {"", "none", "launch:61"}}) {
-        const RenderOutcome outcome = render(faults);
-        expect_same_image(outcome.sums, expected());
-        EXPECT_EQ(outcome.statistics.passes, passes);
-        ASSERT_EQ(outcome.shares.size(), faults.size());
-        for (std::size_t rank = 0; rank < faults.size(); ++rank)
-            EXPECT_EQ(outcome.shares[rank].failure.empty(), faults[rank].empty()) << rank;
+        // On a busy machine the others may have done all before the fault: then once more.
+        bool as_planned = false;
+        for (int attempt = 0; attempt < most_attempts && !as_planned; ++attempt) {
+            const RenderOutcome outcome = render(faults);
+            expect_same_image(outcome.sums, expected());
+            EXPECT_EQ(outcome.statistics.passes, passes);
+            ASSERT_EQ(outcome.shares.size(), faults.size());
+            as_planned = true;
+            for (std::size_t rank = 0; rank < faults.size(); ++rank)
+                as_planned &= outcome.shares[rank].failure.empty() == faults[rank].empty();
+        }
+        EXPECT_TRUE(as_planned);
     }
     const RenderOutcome none = render({"lost:100", "lost:110"});
     EXPECT_GT(none.statistics.passes, 0U);
@@ -109,28 +125,26 @@ TEST(JointRender, OthersDoWhatARankLost) {
 
 /// Sums that are reduced on the way hold the passes that they say, and another render goes on from them.
 TEST(JointRender, SumsOnTheWayAreWhole) {
-    std::vector<RenderSums> on_the_way;
-    bool requested = false;
-    const RenderOutcome outcome = render({"", "", ""}, [&](PassRenderer& joint, Communicator& rank, std::uint64_t) {
-        if (rank.rank() != 0)
+    std::optional<RenderSums> partial;
+    // On a busy machine all may be done before rank 0 comes to ask: then once more.
+    for (int attempt = 0; attempt < most_attempts && !partial; ++attempt) {
+        bool requested = false;
+        const RenderOutcome outcome = render({"", "", ""}, [&](PassRenderer& joint, Communicator& rank, std::uint64_t) {
+            if (rank.rank() != 0)
+                return true;
+            if (!std::exchange(requested, true))
+                joint.request_sums();
+            if (std::optional<RenderSums> sums = joint.requested_sums()) {
+                EXPECT_TRUE(holds_passes(sums->film, sums->passes.count())) << sums->passes.text();
+                if (!sums->passes.empty() && sums->passes.count() < passes)
+                    partial = std::move(sums);
+                requested = false;
+            }
             return true;
-        if (!std::exchange(requested, true))
-            joint.request_sums();
-        if (std::optional<RenderSums> sums = joint.requested_sums()) {
-            on_the_way.push_back(std::move(*sums));
-            requested = false;
-        }
-        return true;
-    });
-    expect_same_image(outcome.sums, expected());
-    ASSERT_FALSE(on_the_way.empty());
-    const RenderSums* partial = nullptr;
-    for (const RenderSums& sums : on_the_way) {
-        EXPECT_TRUE(holds_passes(sums.film, sums.passes.count())) << sums.passes.text();
-        if (!sums.passes.empty() && sums.passes.count() < passes)
-            partial = &sums;
+        });
+        expect_same_image(outcome.sums, expected());
     }
-    ASSERT_NE(partial, nullptr);
+    ASSERT_TRUE(partial);
     const std::unique_ptr<Team> one = team();
     one->resume(*partial, one->initial_radii());
     one->render({passes, {}}, [](std::uint64_t) { return true; });
