@@ -128,7 +128,7 @@ TEST(BenchCurve, SlopeTakesTheLastDecadeAlone) {
     const auto kinked = [](double t) { return t < 10.0 ? 1.0 : 1.0 / std::sqrt(0.1 * t); };
     BenchRun run = run_of("a", {kinked}, 1.0, 4.0);
     for (double t : {10.0, 20.0, 50.0, 100.0}) {
-        Checkpoint point = run.repeats[0].checkpoints[0];
+        CurvePoint point = run.repeats[0].checkpoints[0];
         point.seconds = t;
         point.rmse = {kinked(t)};
         run.repeats[0].checkpoints.push_back(point);
@@ -204,7 +204,7 @@ TEST(BenchSummary, HasEveryPromisedKeyPerRunGroupAndRegion) {
     scene.reference.floor.push_back(0.0);
     for (BenchRun& run : scene.runs)
         for (Repeat& repeat : run.repeats)
-            for (Checkpoint& point : repeat.checkpoints)
+            for (CurvePoint& point : repeat.checkpoints)
                 point.rmse.push_back(2.0 * point.rmse[0]);
     const auto summary = summarise(scene);
     ASSERT_EQ(summary.at("curves").size(), 2U);
@@ -347,7 +347,7 @@ TEST(BenchCsv, HasALinePerCheckpointRegionAndRepeat) {
     scene.regions.push_back({"glass", {0, 0, 2, 2}});
     scene.runs[0].repeats[1].seed = 7;
     for (Repeat& repeat : scene.runs[0].repeats)
-        for (Checkpoint& point : repeat.checkpoints) {
+        for (CurvePoint& point : repeat.checkpoints) {
             point.rmse = {0.5, 0.25};
             point.rel_mse = {0.125, 2.0};
         }

@@ -103,7 +103,7 @@ TEST_F(BenchCommand, MeasuresMethodsOnDevices) {
     }
     // One device renders the same passes, whatever its number: after one pass there is one error.
     const auto after_one_pass = [&](std::size_t i) -> std::optional<std::vector<double>> {
-        const Checkpoint& first = of.runs[i].repeats[0].checkpoints.front();
+        const CurvePoint& first = of.runs[i].repeats[0].checkpoints.front();
         return first.passes == 1 ? std::optional(first.rmse) : std::nullopt;
     };
     if (after_one_pass(0) && after_one_pass(2)) {

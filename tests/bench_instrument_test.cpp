@@ -62,7 +62,7 @@ TEST(BenchInstrument, MeasuredErrorIsTheTrueOne) {
         ASSERT_FALSE(repeat.checkpoints.empty());
         Renderer renderer(scene, options[i], test_device());
         std::uint64_t passes = 0;
-        for (const Checkpoint& checkpoint : repeat.checkpoints) {
+        for (const CurvePoint& checkpoint : repeat.checkpoints) {
             EXPECT_GT(checkpoint.passes, passes);
             EXPECT_EQ(checkpoint.photons, checkpoint.passes * 64);
             EXPECT_GT(checkpoint.memory, 0U);

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tristim::test {
+namespace tristim::test::bench_paragraph_test {
 namespace {
 
 std::string text_of(const SceneResults& scene, std::size_t region = 0) {
@@ -121,7 +121,7 @@ TEST(BenchParagraph, SpeaksOfTheRegion) {
     scene.regions.push_back({"glass", {0, 0, 2, 2}});
     for (BenchRun& run : scene.runs)
         for (Repeat& repeat : run.repeats)
-            for (Checkpoint& point : repeat.checkpoints)
+            for (CurvePoint& point : repeat.checkpoints)
                 point.rmse.push_back(10.0 * point.rmse[0]);
     EXPECT_TRUE(says(text_of(scene, 1), "In the region glass, tristimulus:8 has the least error after 102 s: 0.04, "));
     scene.runs.clear();
@@ -215,4 +215,4 @@ TEST(BenchReadable, RatiosAndLists) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::bench_paragraph_test

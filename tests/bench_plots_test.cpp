@@ -107,7 +107,7 @@ std::vector<int> bar_ends(const Pixels& image, const Colour& colour) {
 TEST(BenchPlots, CurvesOfPowerLawsAreParallelStraightLines) {
     const SceneFolder folder;
     SceneResults scene = scene_of({run_of("low", {law(0.1)}), run_of("high", {law(0.4)})});
-    for (Checkpoint& point : scene.runs[1].repeats[0].checkpoints)
+    for (CurvePoint& point : scene.runs[1].repeats[0].checkpoints)
         point.memory = 100 << 20;
     write_bench_plots(results_of({scene}), folder.path(""));
     EXPECT_EQ(files_in(folder.path("plots")),

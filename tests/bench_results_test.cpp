@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Checkpoint checkpoint(double seconds) {
+CurvePoint checkpoint(double seconds) {
     return {seconds,
             static_cast<std::uint64_t>(1000.0 * seconds),
             (1ULL << 40) + 7,
@@ -207,7 +207,7 @@ TEST(BenchResultsFile, TableHasALineForEachCheckpointAndRegion) {
     std::size_t next = 1;
     const BenchResults results = filled();
     for (const Repeat& repeat : results.scenes[0].runs[0].repeats) {
-        for (const Checkpoint& point : repeat.checkpoints) {
+        for (const CurvePoint& point : repeat.checkpoints) {
             for (std::size_t r = 0; r < 2; ++r) {
                 const auto& line = lines[next++];
                 EXPECT_EQ(line[0], "glass");

@@ -169,7 +169,7 @@ class BenchResume : public testing::Test {
     void expect_render_in_one_go(std::size_t run, std::size_t repeat) const {
         const BenchPlan plan = bench.plan();
         const SceneResults results = bench.results().scenes.at(0);
-        const Checkpoint last = results.runs.at(run).repeats.at(repeat).checkpoints.back();
+        const CurvePoint last = results.runs.at(run).repeats.at(repeat).checkpoints.back();
         const XyzImage reference = read_reference(bench.path(results.reference.file)).image;
         RenderOptions options = plan.scenes.at(0).options.at(run);
         options.seed = bench.seed + static_cast<std::uint32_t>(repeat);

@@ -119,7 +119,7 @@ inline Repeat measure_doublings(const Scene& scene, const RenderOptions& options
 /// The same repeat on a machine where every pass takes a millisecond, so that what follows does not depend on how busy
 /// this one is.
 inline Repeat with_steady_clock(Repeat repeat) {
-    for (Checkpoint& checkpoint : repeat.checkpoints)
+    for (CurvePoint& checkpoint : repeat.checkpoints)
         checkpoint.seconds = 1e-3 * static_cast<double>(checkpoint.passes);
     return repeat;
 }

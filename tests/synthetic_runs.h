@@ -18,7 +18,7 @@ inline Repeat repeat_of(const ErrorLaw& error, double first = 0.1, double end = 
     Repeat repeat;
     repeat.finished = true;
     for (double t = first; t <= end; t *= 2.0) {
-        Checkpoint point;
+        CurvePoint point;
         point.seconds = t;
         point.passes = repeat.checkpoints.size() + 1;
         point.photons = 1000 * point.passes;

@@ -25,7 +25,7 @@ struct Samples {
 /// Of one repeat: what can be drawn on a logarithmic axis of time.
 Samples usable_samples(const Repeat& repeat, std::size_t region) {
     Samples samples;
-    for (const Checkpoint& checkpoint : repeat.checkpoints) {
+    for (const CurvePoint& checkpoint : repeat.checkpoints) {
         if (checkpoint.rmse.size() <= region || !std::isfinite(checkpoint.rmse[region]) ||
             !std::isfinite(checkpoint.seconds))
             continue;
@@ -230,7 +230,7 @@ std::string results_csv(const BenchResults& results) {
             const std::string head = fmt::format("{},{},{}", csv_field(scene.name),
                                                  csv_field(results.devices.at(run.device).name), csv_field(run.id));
             for (const Repeat& repeat : run.repeats)
-                for (const Checkpoint& point : repeat.checkpoints)
+                for (const CurvePoint& point : repeat.checkpoints)
                     for (std::size_t r = 0; r < scene.regions.size(); ++r)
                         csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", head, repeat.seed,
                                            csv_field(scene.regions[r].name), point.seconds, point.passes, point.photons,

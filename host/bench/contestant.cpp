@@ -52,7 +52,7 @@ void Contestant::measure(const XyzImage& reference, const std::vector<NamedRegio
     const Stopwatch comparing;
     const RenderStatistics& statistics = renderer_.statistics();
     const std::uint64_t before = repeat_.checkpoints.empty() ? 0 : repeat_.checkpoints.back().memory;
-    Checkpoint checkpoint{
+    CurvePoint checkpoint{
         seconds(), statistics.passes, statistics.photons_emitted, std::max(before, device_memory(statistics)), {}, {}};
     const XyzImage now = image();
     for (const NamedRegion& region : regions) {
@@ -108,7 +108,7 @@ void Contestant::restore(const std::string& path, const Repeat& measured) {
     renderer_.restore(pixels, state["passes"].get<std::uint64_t>(), state["seconds"].get<double>());
     repeat_.build_seconds += state["build_seconds"].get<double>();
     repeat_.compare_seconds = measured.compare_seconds;
-    for (const Checkpoint& checkpoint : measured.checkpoints) {
+    for (const CurvePoint& checkpoint : measured.checkpoints) {
         if (checkpoint.passes <= renderer_.statistics().passes)
             repeat_.checkpoints.push_back(checkpoint);
     }

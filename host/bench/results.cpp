@@ -17,7 +17,7 @@ template <typename T, typename Struct>
 concept Same = std::is_same_v<std::remove_const_t<T>, Struct>;
 
 template <typename Visit>
-void fields(Visit& visit, Same<Checkpoint> auto& c) {
+void fields(Visit& visit, Same<CurvePoint> auto& c) {
     visit("seconds", c.seconds);
     visit("passes", c.passes);
     visit("photons", c.photons);
@@ -228,7 +228,7 @@ void check(const BenchResults& results, const std::string& source) {
         for (const Run& run : scene.runs) {
             require(run.device < results.devices.size(), "\"" + run.label + "\" ran on a device that is not listed");
             for (const Repeat& repeat : run.repeats) {
-                for (const Checkpoint& checkpoint : repeat.checkpoints)
+                for (const CurvePoint& checkpoint : repeat.checkpoints)
                     require(checkpoint.rmse.size() == regions && checkpoint.rel_mse.size() == regions,
                             "\"" + run.label + "\" has a checkpoint without an error for each region");
             }

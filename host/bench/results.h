@@ -15,7 +15,7 @@
 namespace tristim {
 
 /// The error of a render in progress.
-struct Checkpoint {
+struct CurvePoint {
     double seconds = 0.0;      ///< of rendering so far: passes alone
     std::uint64_t passes = 0;  ///< so far
     std::uint64_t photons = 0; ///< photon paths emitted so far
@@ -33,7 +33,7 @@ struct Repeat {
     double build_seconds = 0.0;   ///< kernels and pilot passes, outside of the checkpoints' seconds
     double compare_seconds = 0.0; ///< reading the film back and comparing it, outside as well
     bool finished = false;        ///< reached the bench's time
-    std::vector<Checkpoint> checkpoints;
+    std::vector<CurvePoint> checkpoints;
 };
 
 /// Bytes of device buffers at the end of the first repeat, by what they grow with.
