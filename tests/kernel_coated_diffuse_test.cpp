@@ -73,7 +73,7 @@ double internal_error(const CoatedSurface& surface) {
     return (absorbs(surface) && surface.layers[0].thickness > 1000.0 ? 8e-5 : 2e-6) + film_error;
 }
 
-const char* const source = R"(
+const char* const coated_diffuse_source = R"(
 #define PATH_SPECTRUM 1
 #include "coated_diffuse.h"
 
@@ -174,7 +174,7 @@ kernel void interpolate(const global SurfaceMaterial* material, const global flo
 /// Everything that falls on a film comes back: from its face R(θ), through it T(θ) ρ/(n² (1 - ρF)) ∫T 2μ dμ; with ρ = 1
 /// and no absorption all of it.
 TEST(KernelCoatedDiffuse, AlbedoIsTheClosedFormAndAWhiteBodyLosesNothing) {
-    const ::cl::Program program = build_test_program(source, interface_macros());
+    const ::cl::Program program = build_test_program(coated_diffuse_source, interface_macros());
     const std::vector<Node> rule = gauss_legendre(64);
     std::vector<float> cosines;
     for (const Node& node : rule) {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace tristim {
+namespace tristim::rough_gather_test {
 namespace {
 
 using namespace kernel_test;
@@ -287,4 +287,4 @@ TEST(KernelGatherRough, WeighsPhotonsByTheBsdfFromBothSides) {
 }
 
 } // namespace
-} // namespace tristim
+} // namespace tristim::rough_gather_test

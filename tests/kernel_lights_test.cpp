@@ -15,7 +15,7 @@ namespace {
 using namespace kernel_test;
 using std::numbers::pi;
 
-const char* const source = R"(
+const char* const lights_source = R"(
 #include "lights.h"
 kernel void choose(const global SceneConstants* constants, const global float* light_cdf, const global float* u,
                    global int* chosen) {
@@ -108,7 +108,7 @@ struct Emitted {
 
 Emitted emit(const SceneLight& light) {
     const Buffer<cl_float4> origins = make_buffer<cl_float4>(samples), directions = make_buffer<cl_float4>(samples);
-    run(build_test_program(source, macros), "emit", samples, upload(std::vector{constants()}),
+    run(build_test_program(lights_source, macros), "emit", samples, upload(std::vector{constants()}),
         upload(std::vector{light}), upload(random_hypercubes(samples, 20)), origins, directions);
     return {origins.read(test_device()), directions.read(test_device())};
 }
@@ -140,7 +140,8 @@ TEST(KernelLights, LightsAreChosenByPower) {
     while (u.size() < samples)
         u.push_back(random());
     const Buffer<int> output = make_buffer<int>(samples);
-    run(build_test_program(source, macros), "choose", samples, upload(std::vector{c}), upload(cdf), upload(u), output);
+    run(build_test_program(lights_source, macros), "choose", samples, upload(std::vector{c}), upload(cdf), upload(u),
+        output);
     const std::vector<int> chosen = output.read(test_device());
     EXPECT_EQ(chosen[0], 1) << "u = 0";
     EXPECT_EQ(chosen[1], 5) << "u just below 1";
@@ -299,7 +300,7 @@ Direct sample_direct(const SceneLight& light, std::size_t count, bool one_point)
         add(one_point ? normalized({-0.2, 0.9, -0.5}) : random.direction());
     }
     const Buffer<cl_float4> origins = make_buffer<cl_float4>(count), directions = make_buffer<cl_float4>(count);
-    run(build_test_program(source, macros), "direct", count, upload(std::vector{light}), upload(result.points),
+    run(build_test_program(lights_source, macros), "direct", count, upload(std::vector{light}), upload(result.points),
         upload(random_squares(count, 23)), origins, directions);
     result.origins = origins.read(test_device());
     result.directions = directions.read(test_device());

@@ -10,7 +10,7 @@ namespace {
 using namespace kernel_test;
 using std::numbers::pi;
 
-const char* const source = R"(
+const char* const microfacet_sampling_source = R"(
 #include "microfacet.h"
 #include "optics.h"
 kernel void sample_normals(float4 wo, float2 alpha, const global float2* u, global float4* m) {
@@ -51,7 +51,7 @@ kernel void scatter(float4 wo, float2 alpha, const global float4* m, global floa
 )";
 
 const ::cl::Program& program() {
-    static const ::cl::Program built = build_test_program(source);
+    static const ::cl::Program built = build_test_program(microfacet_sampling_source);
     return built;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using namespace kernel_test;
 
-const char* const source = R"(
+const char* const microfacet_source = R"(
 #include "microfacet.h"
 kernel void facets(const global float4* wo, const global float4* m, const global float2* alpha, global float4* out) {
     const size_t i = get_global_id(0);
@@ -36,7 +36,7 @@ kernel void pairs(const global float4* wo, const global float4* wi, const global
 )";
 
 const ::cl::Program& program() {
-    static const ::cl::Program built = build_test_program(source);
+    static const ::cl::Program built = build_test_program(microfacet_source);
     return built;
 }
 

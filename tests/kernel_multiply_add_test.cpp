@@ -13,7 +13,7 @@ namespace {
 using namespace kernel_test;
 
 /// Lane 0 of a float, lane 2 of a float3 and lane 7 of a float8 are the functions that the kernels call most.
-const char* const source = R"(
+const char* const multiply_add_source = R"(
 #include "multiply_add.h"
 kernel void fused(const global float4* in, global float4* out) {
     const float4 x = in[get_global_id(0)];
@@ -25,7 +25,7 @@ kernel void fused(const global float4* in, global float4* out) {
 
 std::vector<cl_float4> fused(const std::vector<cl_float4>& inputs) {
     const Buffer<cl_float4> out = make_buffer<cl_float4>(inputs.size());
-    run(build_test_program(source, {{"HAS_FMA", "0"}}), "fused", inputs.size(), upload(inputs), out);
+    run(build_test_program(multiply_add_source, {{"HAS_FMA", "0"}}), "fused", inputs.size(), upload(inputs), out);
     return out.read(test_device());
 }
 

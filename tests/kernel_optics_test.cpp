@@ -15,7 +15,7 @@ namespace {
 using namespace kernel_test;
 using std::numbers::pi;
 
-const char* const source = R"(
+const char* const optics_source = R"(
 #include "optics.h"
 // (cosine, 1/eta) to (reflectance, cosine beyond).
 kernel void dielectric(const global float2* inputs, global float2* out) {
@@ -102,7 +102,7 @@ TEST(KernelOptics, DielectricReflectance) {
             inputs.push_back({{cosine, 1.0F / eta}});
     }
     const Buffer<cl_float2> output = make_buffer<cl_float2>(inputs.size());
-    run(build_test_program(source), "dielectric", inputs.size(), upload(inputs), output);
+    run(build_test_program(optics_source), "dielectric", inputs.size(), upload(inputs), output);
     const std::vector<cl_float2> results = output.read(test_device());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const double cosine = inputs[i].s[0], eta = 1.0 / inputs[i].s[1];
@@ -144,7 +144,7 @@ TEST(KernelOptics, DielectricReflectanceIsReciprocal) {
             back.push_back({{static_cast<float>(std::sqrt(cos2_t)), eta}});
         }
     }
-    const ::cl::Program program = build_test_program(source);
+    const ::cl::Program program = build_test_program(optics_source);
     const Buffer<cl_float2> first = make_buffer<cl_float2>(there.size()), second = make_buffer<cl_float2>(there.size());
     run(program, "dielectric", there.size(), upload(there), first);
     run(program, "dielectric", there.size(), upload(back), second);
@@ -167,7 +167,7 @@ TEST(KernelOptics, ConductorReflectance) {
             for (const float cosine : cosines(eta < 1.0F ? std::sqrt(1.0 - double{eta} * eta) : -1.0))
                 inputs.push_back({{cosine, eta, k, 0.0F}});
     const Buffer<cl_float4> output = make_buffer<cl_float4>(inputs.size());
-    run(build_test_program(source, {{"LANES", "4"}}), "conductor", inputs.size(), upload(inputs), output);
+    run(build_test_program(optics_source, {{"LANES", "4"}}), "conductor", inputs.size(), upload(inputs), output);
     const std::vector<cl_float4> results = output.read(test_device());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const double cosine = inputs[i].s[0], eta = inputs[i].s[1], k = inputs[i].s[2];
@@ -200,7 +200,7 @@ TEST(KernelOptics, RaysFollowSnellsLaw) {
     }
     const std::size_t count = rays.size() / 2;
     const Buffer<cl_float4> reflected = make_buffer<cl_float4>(count), refracted = make_buffer<cl_float4>(count);
-    run(build_test_program(source), "bend", count, upload(rays), reflected, refracted);
+    run(build_test_program(optics_source), "bend", count, upload(rays), reflected, refracted);
     const std::vector<cl_float4> mirror = reflected.read(test_device()), bent = refracted.read(test_device());
     std::size_t transmitted = 0;
     for (std::size_t i = 0; i < count; ++i) {

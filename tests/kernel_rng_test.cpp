@@ -10,7 +10,7 @@ namespace {
 
 using namespace kernel_test;
 
-const char* const source = R"(
+const char* const rng_source = R"(
 #include "rng.h"
 kernel void hash(const global uint4* inputs, global uint4* outputs) {
     outputs[get_global_id(0)] = pcg4d(inputs[get_global_id(0)]);
@@ -29,7 +29,7 @@ struct Coordinates {
 };
 
 std::vector<cl_float4> numbers(const std::vector<Coordinates>& coordinates) {
-    const ::cl::Program program = build_test_program(source);
+    const ::cl::Program program = build_test_program(rng_source);
     std::vector<cl_uint4> inputs;
     for (const Coordinates& c : coordinates)
         inputs.push_back({{c.seed, c.pass, c.path, c.dimension}});
@@ -63,7 +63,7 @@ TEST(KernelRng, HashIsPcg4d) {
     for (int i = 0; i < 1000; ++i)
         inputs.push_back({{random.bits(), random.bits(), random.bits(), random.bits()}});
     const Buffer<cl_uint4> output = make_buffer<cl_uint4>(inputs.size());
-    run(build_test_program(source), "hash", inputs.size(), upload(inputs), output);
+    run(build_test_program(rng_source), "hash", inputs.size(), upload(inputs), output);
     const std::vector<cl_uint4> hashes = output.read(test_device());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const auto expected = pcg4d({inputs[i].s[0], inputs[i].s[1], inputs[i].s[2], inputs[i].s[3]});
@@ -76,7 +76,7 @@ TEST(KernelRng, UnitFloatsStayBelowOneAndKeep24Bits) {
     const std::vector<std::uint32_t> bits{0U, 0xffU, 0x100U, 0x80000000U, 0xffffff00U, 0xffffffffU};
     const std::vector<float> expected{0.0F, 0.0F, 0x1p-24F, 0.5F, 0x1.fffffep-1F, 0x1.fffffep-1F};
     const Buffer<float> output = make_buffer<float>(bits.size());
-    run(build_test_program(source), "floats", bits.size(), upload(bits), output);
+    run(build_test_program(rng_source), "floats", bits.size(), upload(bits), output);
     EXPECT_EQ(output.read(test_device()), expected);
 }
 
@@ -138,7 +138,7 @@ TEST(KernelRng, NeighboursAreIndependent) {
 /// Scramblings and slots are taken from the low bits, of neighbouring pixels in x and y too.
 TEST(KernelRng, LowBitsOfNeighboursAreIndependent) {
     constexpr std::uint32_t low = 15;
-    const ::cl::Program program = build_test_program(source);
+    const ::cl::Program program = build_test_program(rng_source);
     const auto hashes = [&](std::uint32_t stream, std::uint32_t counter, std::uint32_t seed) {
         std::vector<cl_uint4> inputs;
         for (std::uint32_t pixel = 0; pixel < samples / 2; ++pixel)

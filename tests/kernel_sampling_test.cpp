@@ -9,13 +9,13 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace tristim {
+namespace tristim::sampling_test {
 namespace {
 
 using namespace kernel_test;
 using std::numbers::pi;
 
-const char* const source = R"(
+const char* const sampling_source = R"(
 #include "config.h"
 #include "sampling.h"
 kernel void disc(const global float2* u, global float4* out) {
@@ -68,7 +68,7 @@ constexpr std::size_t samples = 1 << 18;
 template <typename... Arguments>
 std::vector<cl_float4> sample(const char* kernel, const std::vector<cl_float2>& u, const Arguments&... arguments) {
     const Buffer<cl_float4> output = make_buffer<cl_float4>(u.size());
-    run(build_test_program(source), kernel, u.size(), upload(u), arguments..., output);
+    run(build_test_program(sampling_source), kernel, u.size(), upload(u), arguments..., output);
     return output.read(test_device());
 }
 
@@ -252,7 +252,7 @@ TEST(KernelSampling, SpotFalloffAndItsIntegral) {
         }
     }
     const Buffer<cl_float2> output = make_buffer<cl_float2>(cosines.size());
-    run(build_test_program(source), "spot_terms", cosines.size(), upload(cosines), upload(limits), output);
+    run(build_test_program(sampling_source), "spot_terms", cosines.size(), upload(cosines), upload(limits), output);
     const std::vector<cl_float2> terms = output.read(test_device());
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const double cosine = cosines[i].s[0], total = limits[i].s[0], start = limits[i].s[1];
@@ -290,7 +290,7 @@ std::vector<cl_float4> unit_vectors(std::size_t count) {
 TEST(KernelSampling, FramesAreOrthonormalAndRightHanded) {
     const std::vector<cl_float4> normals = unit_vectors(20000);
     const Buffer<cl_float4> output = make_buffer<cl_float4>(3 * normals.size());
-    run(build_test_program(source), "frames", normals.size(), upload(normals), output);
+    run(build_test_program(sampling_source), "frames", normals.size(), upload(normals), output);
     const std::vector<cl_float4> frames = output.read(test_device());
     // Duff et al. 2017 report errors of a few units for float; products of entries up to 1, three or four roundings
     // each.
@@ -312,7 +312,7 @@ TEST(KernelSampling, FramesAreOrthonormalAndRightHanded) {
 TEST(KernelSampling, PackedNormalsKeepTheirDirection) {
     const std::vector<cl_float4> normals = unit_vectors(1 << 18);
     const Buffer<cl_float4> output = make_buffer<cl_float4>(normals.size());
-    run(build_test_program(source), "pack_and_unpack", normals.size(), upload(normals), output);
+    run(build_test_program(sampling_source), "pack_and_unpack", normals.size(), upload(normals), output);
     const std::vector<cl_float4> unpacked = output.read(test_device());
     // Each coordinate of the octahedron is off by half a step, 0.5/32767, so the point on it by at most √2·√3/2 times
     // that times √2 (its third coordinate follows the sum of both); the octahedron's faces are 1/√3 from the centre,
@@ -332,4 +332,4 @@ TEST(KernelSampling, PackedNormalsKeepTheirDirection) {
 }
 
 } // namespace
-} // namespace tristim
+} // namespace tristim::sampling_test

@@ -17,7 +17,7 @@ namespace {
 using namespace kernel_test;
 using std::numbers::pi;
 
-const char* const source = R"(
+const char* const scatter_source = R"(
 #define PATH_SPECTRUM 1
 #include "bsdf.h"
 
@@ -140,7 +140,7 @@ class KernelScatter : public ::testing::Test {
         return {scattered.read(test_device()), weights.read(test_device())};
     }
 
-    const ::cl::Program program_ = build_test_program(source, macros);
+    const ::cl::Program program_ = build_test_program(scatter_source, macros);
 };
 
 TEST_F(KernelScatter, ReflectsByChanceOfTheReflectanceFromBothSides) {

@@ -17,7 +17,7 @@ using std::numbers::pi;
 using Wrap = Texture::Wrap;
 using Mapping = Texture::Mapping;
 
-const char* const source = R"(
+const char* const texture_source = R"(
 #include "texture.h"
 kernel void evaluate(const global SceneTexture* texture, const global float* texels, const global float4* points,
                      const global float2* uv, global float* out) {
@@ -28,7 +28,7 @@ kernel void evaluate(const global SceneTexture* texture, const global float* tex
 
 /// A texture at points with coordinates uv; the texels lie behind some that belong to another texture.
 std::vector<float> evaluate(const Texture& texture, const std::vector<Vec3>& points, const std::vector<cl_float2>& uv) {
-    static const ::cl::Program program = build_test_program(source);
+    static const ::cl::Program program = build_test_program(texture_source);
     std::vector<float> texels{1e9F, 1e9F, 1e9F};
     const SceneTexture flat = flatten_texture(texture, V3d(0.0), texels);
     std::vector<cl_float4> positions;

@@ -18,7 +18,7 @@ namespace {
 
 using namespace kernel_test;
 
-const char* const source = R"(
+const char* const wavelength_sequences_source = R"(
 #include "wavelengths.cl"
 kernel void invert(const global float* cdf, const global float* u, global float* lambda) {
     float pdf;
@@ -48,7 +48,7 @@ std::vector<float> invert(std::size_t channel, const std::vector<float>& u) {
     const std::vector<float> table = sampler_table({Method::Kind::Tristimulus, 1}, {});
     const auto begin = table.begin() + static_cast<std::ptrdiff_t>(3 * lambda_bins + channel * 2 * (lambda_bins + 1));
     const Buffer<float> output = make_buffer<float>(u.size());
-    run(build_test_program(source), "invert", u.size(),
+    run(build_test_program(wavelength_sequences_source), "invert", u.size(),
         upload(std::vector<float>(begin, begin + 2 * (lambda_bins + 1))), upload(u), output);
     return output.read(test_device());
 }
@@ -97,8 +97,8 @@ TEST(KernelWavelengthSequences, InverseCdfFollowsTheColourMatchingFunctions) {
 std::vector<float> positions(bool random_sequence, std::uint32_t seed, std::uint32_t set, std::uint32_t sets,
                              std::size_t passes) {
     const Buffer<float> output = make_buffer<float>(passes);
-    run(build_test_program(source, {{"SEQUENCE_RANDOM", random_sequence ? "1" : "0"}}), "positions", passes, seed, set,
-        sets, output);
+    run(build_test_program(wavelength_sequences_source, {{"SEQUENCE_RANDOM", random_sequence ? "1" : "0"}}),
+        "positions", passes, seed, set, sets, output);
     return output.read(test_device());
 }
 

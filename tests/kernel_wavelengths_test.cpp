@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace tristim {
+namespace tristim::wavelength_tables_test {
 namespace {
 
 using namespace kernel_test;
@@ -266,4 +266,4 @@ TEST(KernelWavelengths, NarrowLinesKeepTheirEnergy) {
 }
 
 } // namespace
-} // namespace tristim
+} // namespace tristim::wavelength_tables_test

@@ -103,7 +103,7 @@ class LitPasses {
 };
 
 /// Float weights and emission, a rounding each, and their products summed in double.
-constexpr double rounding = 4.0 * unit_roundoff;
+constexpr double rounding = 4.0 * kernel_test::unit_roundoff;
 
 std::vector<std::pair<std::string, Spectrum>> lights() {
     return {{"the measured mercury lamp", Spectrum::named("illum-mercury")},

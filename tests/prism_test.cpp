@@ -150,14 +150,14 @@ kernel void follow(SCENE_PARAMETERS, float3 origin, float3 direction, global flo
 )",
         {{"W", "10"}, {"LANES", "16"}, {"BLOCKS", "1"}, {"HAS_DIELECTRIC", "1"}, {"HAS_DISPERSION", "1"}});
     const FlatScene flat = flatten_scene(prism_scene(), derive_effects(prism_scene()), 1, 1, {0, 0, 1, 1});
-    const SceneBuffers buffers(test_device(), flat);
+    const SceneBuffers buffers(kernel_test::test_device(), flat);
     // Rows of 16: four of wavelengths and weights, then the spectra, of which the materials name the glass's.
     std::vector<float> table(16 * (4 + static_cast<std::size_t>(flat.spectra.rows())), 0.0F);
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w)
         table[16 * (4 + static_cast<std::size_t>(flat.materials[0].eta)) + w] =
             static_cast<float>(glass()(wavelengths_nm[w]));
     const Buffer<float> pass_table = upload(table);
-    const RayRecorder recorder(test_device(), 0);
+    const RayRecorder recorder(kernel_test::test_device(), 0);
     const Buffer<cl_float4> output = make_buffer<cl_float4>(3 * wavelengths_nm.size());
     ::cl::Kernel kernel(program, "follow");
     cl_uint index = buffers.bind(kernel, pass_table, recorder);
@@ -165,8 +165,9 @@ kernel void follow(SCENE_PARAMETERS, float3 origin, float3 direction, global flo
     set_argument(kernel, index++, cl_float3{{from.x, from.y, from.z}});
     set_argument(kernel, index++, cl_float3{{along.x, along.y, along.z}});
     set_argument(kernel, index++, output);
-    test_device().queue.enqueueNDRangeKernel(kernel, ::cl::NullRange, ::cl::NDRange(wavelengths_nm.size()));
-    const std::vector<cl_float4> results = output.read(test_device());
+    kernel_test::test_device().queue.enqueueNDRangeKernel(kernel, ::cl::NullRange,
+                                                          ::cl::NDRange(wavelengths_nm.size()));
+    const std::vector<cl_float4> results = output.read(kernel_test::test_device());
 
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
         const Landing expected = through_the_prism(beam, glass()(wavelengths_nm[w]));
@@ -217,7 +218,7 @@ TEST(Prism, RenderedSpectrumLandsWhereSnellsLawSays) {
     options.max_depth = 4;
     options.radius = 0.1;
     options.seed = 5;
-    Renderer renderer(scene, options, test_device());
+    Renderer renderer(scene, options, kernel_test::test_device());
 
     constexpr int passes = 6;
     constexpr int slots_around = 2; // a wavelength's photons are those of five bins of 1 nm

@@ -9,7 +9,7 @@
 #include <functional>
 #include <iterator>
 
-namespace tristim::test {
+namespace tristim::test::reference_command_test {
 namespace {
 
 constexpr const char* small_scene =
@@ -257,4 +257,4 @@ TEST(ReferenceRender, WritesNowAndThen) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::reference_command_test

@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-namespace tristim::test {
+namespace tristim::test::reference_files_test {
 namespace {
 
 using Pixels = std::vector<std::array<float, 3>>;
@@ -171,4 +171,4 @@ TEST_F(ReferenceFile, RefusesAnotherScene) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::reference_files_test

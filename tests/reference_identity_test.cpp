@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tristim::test {
+namespace tristim::test::reference_identity_test {
 namespace {
 
 constexpr const char* triangle_ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -149,4 +149,4 @@ TEST_F(Identity, DoesNotSeeWhatNoImageShows) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::reference_identity_test

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace tristim {
+namespace tristim::spectra_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -276,4 +276,4 @@ TEST(NamedSpectra, MetalsHavePublishedIndices) {
 }
 
 } // namespace
-} // namespace tristim
+} // namespace tristim::spectra_test

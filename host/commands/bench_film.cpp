@@ -16,7 +16,7 @@
 namespace tristim {
 namespace {
 
-struct Options {
+struct BenchFilmOptions {
     bool json = false;
     std::string device;
     int repeats = 15;
@@ -136,7 +136,7 @@ std::vector<Result> measure(std::vector<Contestant>& contestants, int repeats) {
     return results;
 }
 
-void bench_film(const Options& options) {
+void bench_film(const BenchFilmOptions& options) {
     const Device device = open_device(options.device);
     std::vector<Contestant> contestants;
     for (const Stack& stack : stacks)
@@ -161,7 +161,7 @@ void bench_film(const Options& options) {
 
 void add_bench_film_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench-film", "Time of one thin-film reflectance");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchFilmOptions>();
     command->add_flag("--json", options->json, "print a JSON list instead of a table");
     add_device_option(*command, options->device);
     command->add_option("--repeats", options->repeats, "timed runs of each film")

@@ -20,7 +20,7 @@
 namespace tristim {
 namespace {
 
-struct Options {
+struct BenchRaysOptions {
     bool json = false;
     std::string device;
     std::string tuning;
@@ -40,7 +40,7 @@ struct RaySet {
     std::vector<Ray> rays;
 };
 
-struct Result {
+struct RayResult {
     std::string mesh;
     std::size_t triangles = 0;
     std::string rays;
@@ -181,7 +181,7 @@ struct Contest {
 };
 
 /// Times the three in turn, `repeats` times after a warm-up, and compares our results with Embree's robust mode.
-Result measure(Contest& contest, const BenchMesh& mesh, const RaySet& set, int repeats) {
+RayResult measure(Contest& contest, const BenchMesh& mesh, const RaySet& set, int repeats) {
     std::vector<RayHit> hits(set.rays.size());
     std::vector<std::int32_t> occluded(set.rays.size());
     const auto run_tristim = [&] {
@@ -205,7 +205,7 @@ Result measure(Contest& contest, const BenchMesh& mesh, const RaySet& set, int r
         ratio_robust.push_back(robust.back() / tristim.back());
     }
     const double million_rays = 1e-6 * static_cast<double>(set.rays.size());
-    Result result;
+    RayResult result;
     result.mesh = mesh.name;
     result.triangles = mesh.triangles.v0.size();
     result.rays = set.name;
@@ -219,40 +219,40 @@ Result measure(Contest& contest, const BenchMesh& mesh, const RaySet& set, int r
     return result;
 }
 
-std::vector<Result> measure_mesh(const Device& device, const BenchMesh& mesh, const Options& options) {
+std::vector<RayResult> measure_mesh(const Device& device, const BenchMesh& mesh, const BenchRaysOptions& options) {
     Contest contest(device, mesh.triangles);
     const RaySet primary = primary_rays(options.rays);
     const std::vector<SurfacePoint> points =
         surface_points(mesh.triangles, primary, contest.tristim.trace_closest(primary.rays));
-    std::vector<Result> results;
+    std::vector<RayResult> results;
     for (const RaySet& set : {primary, diffuse_rays(points), photon_rays(options.rays), shadow_rays(points)})
         results.push_back(measure(contest, mesh, set, options.repeats));
     return results;
 }
 
-double geometric_mean(const std::vector<Result>& results, double Result::*member) {
+double geometric_mean(const std::vector<RayResult>& results, double RayResult::*member) {
     double sum = 0.0;
-    for (const Result& result : results)
+    for (const RayResult& result : results)
         sum += std::log(result.*member);
     return std::exp(sum / static_cast<double>(results.size()));
 }
 
-void print_table(const std::vector<Result>& results, const Options& options, const Device& device) {
+void print_table(const std::vector<RayResult>& results, const BenchRaysOptions& options, const Device& device) {
     fmt::print("{} rays each on '{}', Embree on {} threads; Mrays/s, medians of {}\n\n", options.rays, device.info.name,
                device.info.compute_units, options.repeats);
     fmt::print("{:<12} {:>9} {:<8} {:>8} {:>8} {:>8} {:>7} {:>7} {:>10}\n", "mesh", "triangles", "rays", "tristim",
                "embree", "robust", "ratio", "/robust", "mismatches");
-    for (const Result& r : results)
+    for (const RayResult& r : results)
         fmt::print("{:<12} {:>9} {:<8} {:>8.2f} {:>8.2f} {:>8.2f} {:>7.2f} {:>7.2f} {:>10}\n", r.mesh, r.triangles,
                    r.rays, r.tristim_mrays, r.embree_mrays, r.embree_robust_mrays, r.ratio, r.ratio_robust,
                    r.mismatches);
     fmt::print("\ngeometric mean of ratios: {:.2f}, to Embree's robust mode {:.2f}\n",
-               geometric_mean(results, &Result::ratio), geometric_mean(results, &Result::ratio_robust));
+               geometric_mean(results, &RayResult::ratio), geometric_mean(results, &RayResult::ratio_robust));
 }
 
-void print_json(const std::vector<Result>& results) {
+void print_json(const std::vector<RayResult>& results) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Result& r : results)
+    for (const RayResult& r : results)
         list.push_back({{"mesh", r.mesh},
                         {"triangles", r.triangles},
                         {"rays", r.rays},
@@ -265,12 +265,12 @@ void print_json(const std::vector<Result>& results) {
     fmt::print("{}\n", list.dump(2));
 }
 
-void bench_rays(const Options& options) {
+void bench_rays(const BenchRaysOptions& options) {
     const Device device = open_tuned_device(options.device, options.tuning);
-    std::vector<Result> results;
+    std::vector<RayResult> results;
     for (const BenchMesh& mesh : {boxes_in_room(), bumpy_spheres_in_room("spheres-100k", 100'000),
                                   bumpy_spheres_in_room("spheres-1m", 1'000'000)})
-        for (const Result& result : measure_mesh(device, mesh, options))
+        for (const RayResult& result : measure_mesh(device, mesh, options))
             results.push_back(result);
     options.json ? print_json(results) : print_table(results, options, device);
 }
@@ -280,7 +280,7 @@ void bench_rays(const Options& options) {
 void add_bench_rays_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("bench-rays", "Mrays/s of the traversal kernel beside Embree's rtcIntersect1/rtcOccluded1");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchRaysOptions>();
     command->add_flag("--json", options->json, "print a JSON list instead of a table");
     add_device_option(*command, options->device);
     add_tuning_option(*command, options->tuning);

@@ -25,7 +25,7 @@ constexpr const char* baseline = "tristimulus:1@random"; // the paper's method w
 constexpr std::uint64_t geometry_passes = 64;
 constexpr int most_passes = 1 << 24, most_repeats = 1000;
 
-struct Command {
+struct BenchWavelengths {
     std::vector<std::string> scenes;
     std::string methods = "tristimulus:20@random,tristimulus:1,illuminant:1,illuminant-mixture:4,illuminant-mixture:8,"
                           "hero:4,gauss:4,visible:4,mixture:4";
@@ -39,7 +39,7 @@ struct Command {
 };
 
 /// The baseline, then the methods asked for.
-VariantGroup variants(const Command& command, const RenderOptions& base) {
+VariantGroup variants(const BenchWavelengths& command, const RenderOptions& base) {
     std::string methods = baseline;
     for (const Variant& variant : method_variants(command.methods, base).variants) {
         if (variant.options.auto_method)
@@ -52,7 +52,7 @@ VariantGroup variants(const Command& command, const RenderOptions& base) {
 }
 
 /// What is measured of one scene.
-struct Measured {
+struct MeasuredVariants {
     std::string scene;
     std::vector<Variant> variants;
     ExactImage exact;
@@ -71,15 +71,15 @@ struct Measured {
     }
 };
 
-Measured measure(const Command& command, const std::string& file, const Device& device,
-                 const std::function<void(double share, const std::string& what)>& progress) {
+MeasuredVariants measure(const BenchWavelengths& command, const std::string& file, const Device& device,
+                         const std::function<void(double share, const std::string& what)>& progress) {
     const Scene scene = load_scene(file);
     RenderOptions base = options_from_scene(scene.settings);
     base.photons_per_pass = 1;
     base.seed = command.seed;
     check_options(base);
     const auto passes = static_cast<std::uint64_t>(command.passes);
-    Measured measured{file, variants(command, base).variants, {}, 0.0, {}};
+    MeasuredVariants measured{file, variants(command, base).variants, {}, 0.0, {}};
     const auto on_device = std::make_shared<const DeviceScene>(scene, base, device);
     progress(0.0, "the exact image");
     measured.exact = exact_image(on_device, base, device, std::min<std::uint64_t>(passes, 256));
@@ -104,7 +104,7 @@ std::vector<double> rounded(std::vector<double> values) {
     return values;
 }
 
-nlohmann::ordered_json to_json(const Measured& measured) {
+nlohmann::ordered_json to_json(const MeasuredVariants& measured) {
     nlohmann::ordered_json json{{"scene", measured.scene},
                                 {"name", std::filesystem::path(measured.scene).stem().string()},
                                 {"exact_error", rounded(measured.exact.error)},
@@ -125,7 +125,7 @@ nlohmann::ordered_json to_json(const Measured& measured) {
     return json;
 }
 
-void print(const Measured& measured, const Command& command) {
+void print(const MeasuredVariants& measured, const BenchWavelengths& command) {
     fmt::print("{}: RMSE in XYZ over {} repeats; the exact image errs by {:.1e}, paths by {:.1e}\n", measured.scene,
                command.repeats, measured.exact.error, measured.geometric_noise);
     const std::vector<std::uint64_t>& passes = measured.curves.front().passes;
@@ -147,7 +147,7 @@ void print(const Measured& measured, const Command& command) {
     fmt::print("\n");
 }
 
-void run(const Command& command) {
+void run(const BenchWavelengths& command) {
     if (!command.plot.empty())
         check_plot_file(command.plot);
     const Device device = open_device(command.device);
@@ -155,7 +155,7 @@ void run(const Command& command) {
     nlohmann::ordered_json results = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < command.scenes.size(); ++i) {
         const std::string& scene = command.scenes[i];
-        const Measured measured = measure(command, scene, device, [&](double share, const std::string& what) {
+        const MeasuredVariants measured = measure(command, scene, device, [&](double share, const std::string& what) {
             bar.update(static_cast<double>(i) + share, static_cast<double>(command.scenes.size()), scene + ", " + what);
         });
         results.push_back(to_json(measured));
@@ -174,7 +174,7 @@ void run(const Command& command) {
 void add_bench_wavelengths_command(CLI::App& app) {
     CLI::App* sub = app.add_subcommand(
         "bench-wavelengths", "Error that methods make by their wavelengths alone, on scenes without other noise");
-    const auto command = std::make_shared<Command>();
+    const auto command = std::make_shared<BenchWavelengths>();
     sub->add_option("scenes", command->scenes, "Scene files, such as bench/scenes/*.pbrt")
         ->required()
         ->type_name("SCENE...");

@@ -13,7 +13,7 @@
 namespace tristim {
 namespace {
 
-struct Options {
+struct CompareOptions {
     std::string a;
     std::string b;
     std::string region;
@@ -48,7 +48,7 @@ void print_json(const ImageDifference& d) {
     fmt::print("{}\n", object.dump(2));
 }
 
-void compare(const Options& options) {
+void compare(const CompareOptions& options) {
     const Region region = options.region.empty() ? Region{} : parse_region(options.region);
     const XyzImage a = read_exr(options.a);
     const XyzImage b = read_exr(options.b);
@@ -61,7 +61,7 @@ void compare(const Options& options) {
 void add_compare_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("compare", "Error of image A against reference B: RMSE in XYZ, relMSE, PSNR");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CompareOptions>();
     command->add_option("a", options->a, "Image (EXR with channels R, G, B in linear sRGB, or X, Y, Z)")
         ->required()
         ->type_name("A.exr");

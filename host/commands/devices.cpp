@@ -24,7 +24,7 @@ const char* type_name(cl_device_type type) {
     return "accelerator";
 }
 
-struct Command {
+struct DevicesCommand {
     std::string device;
     bool check = false;
     int check_alone = -1;
@@ -76,7 +76,8 @@ std::vector<std::string> environment() {
 
 /// `original` is the environment from before the first OpenCL call: loaders have been seen to cut OCL_ICD_FILENAMES
 /// at its first colon, in place, so that child processes would find one device only.
-void check(const Command& command, const std::vector<DeviceInfo>& devices, const std::vector<std::string>& original) {
+void check(const DevicesCommand& command, const std::vector<DeviceInfo>& devices,
+           const std::vector<std::string>& original) {
     check_effort(command.effort);
     if (!(command.time > 0.0 && command.time <= 1e6))
         fail("--time must be above 0 and at most 1000000 seconds, not {}", command.time);
@@ -102,7 +103,7 @@ void check(const Command& command, const std::vector<DeviceInfo>& devices, const
         throw CLI::RuntimeError(1);
 }
 
-void run(const Command& command) {
+void run(const DevicesCommand& command) {
     if (command.check_alone >= 0) {
         check_device(command.check_alone, command.effort, [](const std::string& line) {
             fmt::print("{}\n", line);
@@ -131,7 +132,7 @@ void run(const Command& command) {
 } // namespace
 
 void add_devices_command(CLI::App& app) {
-    auto command = std::make_shared<Command>();
+    auto command = std::make_shared<DevicesCommand>();
     CLI::App* sub = app.add_subcommand("devices", "List every OpenCL platform and device, or check and time them");
     add_device_option(*sub, command->device);
     sub->add_flag("--check", command->check,

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t max_rows = 1'000'000;
 constexpr std::size_t max_colours = 100'000;
 
-struct Options {
+struct FilmOptions {
     std::string stack;
     std::string angle = "0";
     std::string wavelength = "380:780:5";
@@ -34,7 +34,7 @@ struct Options {
 };
 
 /// The options and what they say together, checked.
-FilmReport plan(const Options& options) {
+FilmReport plan(const FilmOptions& options) {
     FilmReport report;
     report.stack = parse_film_stack(options.stack);
     report.angles_deg = parse_range(options.angle, "angle");
@@ -86,7 +86,7 @@ void print(const std::string& text) {
         fail("cannot write the results: {}", std::strerror(errno));
 }
 
-void film(const Options& options) {
+void film(const FilmOptions& options) {
     FilmReport report = plan(options);
     const Illuminant illuminant = find_illuminant(options.illuminant);
     report.illuminant = illuminant.name;
@@ -132,7 +132,7 @@ constexpr const char* footer =
 
 void add_film_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("film", "Reflectance, transmittance and colour of a thin-film stack");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<FilmOptions>();
     command->add_option("stack", o->stack, "The stack, such as 'air|SiO2:300|Si'")->required()->type_name("STACK");
     command->add_option("--angle", o->angle, "Angles of incidence in degrees")
         ->type_name("A|A0:A1:STEP")

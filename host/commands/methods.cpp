@@ -7,7 +7,7 @@
 namespace tristim {
 namespace {
 
-void run() {
+void list_methods() {
     constexpr const char* line = "{:<22}{:<10}{:<10}{}\n";
     fmt::print(line, "method", "W", "exact", "how the W wavelengths of a pass are chosen");
     for (const MethodKind& kind : method_kinds()) {
@@ -31,7 +31,8 @@ void run() {
 } // namespace
 
 void add_methods_command(CLI::App& app) {
-    app.add_subcommand("methods", "List the methods of choosing wavelengths that --method takes")->callback(run);
+    app.add_subcommand("methods", "List the methods of choosing wavelengths that --method takes")
+        ->callback(list_methods);
 }
 
 } // namespace tristim

@@ -13,7 +13,7 @@
 namespace tristim {
 namespace {
 
-struct Command {
+struct SelftestCommand {
     std::string device;
     std::string math = "both";
     std::vector<std::string> groups;
@@ -48,7 +48,7 @@ void list(const std::vector<selftest::Case>& cases) {
                    selftest::bound_text(c.fast_bound), c.error);
 }
 
-void run(const Command& command) {
+void run(const SelftestCommand& command) {
     const std::vector<selftest::Case> cases = chosen_cases(command.groups);
     if (command.list)
         return list(cases);
@@ -85,7 +85,7 @@ void run(const Command& command) {
 } // namespace
 
 void add_selftest_command(CLI::App& app) {
-    auto command = std::make_shared<Command>();
+    auto command = std::make_shared<SelftestCommand>();
     CLI::App* sub = app.add_subcommand(
         "selftest", "Compare what the kernels compute on a device with double precision: can its numbers be trusted?");
     add_device_option(*sub, command->device);

@@ -20,7 +20,7 @@
 namespace tristim {
 namespace {
 
-struct Options {
+struct SpectraOptions {
     std::vector<std::string> names;
     std::string plot;
     bool json = false;
@@ -218,7 +218,7 @@ void draw(const std::vector<std::string>& names, const std::string& file) {
     write_plot(plot, file);
 }
 
-void spectra(const Options& options) {
+void spectra(const SpectraOptions& options) {
     if (!options.plot.empty()) {
         if (options.names.empty())
             fail("--plot needs the name of at least one spectrum");
@@ -241,7 +241,7 @@ void spectra(const Options& options) {
 
 void add_spectra_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("spectra", "List the named spectra; print or draw them");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<SpectraOptions>();
     command->add_option("name", options->names, "Print this one as a .spd file [list all]")->type_name("NAME");
     CLI::Option* plot = command
                             ->add_option("--plot", options->plot,

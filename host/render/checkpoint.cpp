@@ -154,7 +154,7 @@ std::string checksum(std::string_view bytes) {
     return hash.hexadecimal();
 }
 
-std::string_view view(const std::vector<unsigned char>& bytes) {
+std::string_view text_of(const std::vector<unsigned char>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -243,7 +243,7 @@ std::string write_checkpoint(const std::string& path, const Checkpoint& checkpoi
     for (std::size_t p = 0; p < planes.size(); ++p)
         copy_words(values.data() + p * word, stride, planes[p].first, planes[p].stride, pixels);
     std::vector<unsigned char> bytes = encode(spec_of(checkpoint, planes), values);
-    const std::string sum = checksum(view(bytes)), end = fmt::format("{}{}\n", trailer, sum);
+    const std::string sum = checksum(text_of(bytes)), end = fmt::format("{}{}\n", trailer, sum);
     bytes.insert(bytes.end(), end.begin(), end.end());
     replace_file(path, bytes);
     return sum;

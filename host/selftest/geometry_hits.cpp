@@ -13,10 +13,6 @@ struct Probes {
     std::vector<Ray> rays;
 };
 
-V3f to_float(const V3d& v) {
-    return V3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-}
-
 /// A point of a triangle or near it: corners, edges, within and without.
 V3d aim(const Corners& triangle, Random& random) {
     double u = random(-0.1, 1.1), v = random(-0.1, 1.1);
@@ -76,7 +72,7 @@ Probes random_probes(std::size_t count, double scale, const V3d& centre, Random&
     return probes;
 }
 
-constexpr std::size_t rays_per_value = 8000;
+constexpr std::size_t probes_per_value = 8000;
 
 } // namespace
 
@@ -85,8 +81,8 @@ Measurement hits_by_scale(const GeometryKernels& kernels, const Setting& setting
     Random random(1);
     for (int exponent = -6; exponent <= 6; ++exponent) {
         const double scale = std::pow(10.0, exponent);
-        add_errors(kernels, random_probes(inputs(setting, rays_per_value, 16), scale, V3d(0.0), random), scale, "scale",
-                   found);
+        add_errors(kernels, random_probes(inputs(setting, probes_per_value, 16), scale, V3d(0.0), random), scale,
+                   "scale", found);
     }
     return found;
 }
@@ -96,7 +92,7 @@ Measurement hits_by_distance(const GeometryKernels& kernels, const Setting& sett
     Random random(2);
     for (double distance = 0.1; distance < 2e6; distance *= 10.0) {
         const V3d centre = distance * random.direction();
-        add_errors(kernels, random_probes(inputs(setting, rays_per_value, 16), 1.0, centre, random), distance,
+        add_errors(kernels, random_probes(inputs(setting, probes_per_value, 16), 1.0, centre, random), distance,
                    "distance", found);
     }
     return found;
@@ -107,7 +103,7 @@ Measurement hits_by_aspect(const GeometryKernels& kernels, const Setting& settin
     Random random(3);
     for (double aspect = 1.0; aspect < 2e7; aspect *= 10.0) {
         Probes probes;
-        const std::size_t count = inputs(setting, rays_per_value, 16);
+        const std::size_t count = inputs(setting, probes_per_value, 16);
         for (std::size_t i = 0; i < count; ++i) {
             const V3d along = random.direction();
             const V3d across = along.cross(random.direction()).normalized() / aspect;
@@ -128,7 +124,7 @@ Measurement hits_by_cosine(const GeometryKernels& kernels, const Setting& settin
     Random random(4);
     for (double cosine = 1.0; cosine > 1e-8; cosine *= 0.1) {
         Probes probes;
-        const std::size_t count = inputs(setting, rays_per_value, 16);
+        const std::size_t count = inputs(setting, probes_per_value, 16);
         while (probes.rays.size() < count) {
             const auto vertex = [&] { return to_float(random.in_cube(1.0)); };
             const Corners triangle{vertex(), vertex(), vertex()};

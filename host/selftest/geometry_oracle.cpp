@@ -14,10 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-V3f to_float(const V3d& v) {
-    return V3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-}
-
 V3d origin_of(const Ray& ray) {
     return {ray.origin_x, ray.origin_y, ray.origin_z};
 }
@@ -124,6 +120,10 @@ V3d Random::direction() {
 Ray ray_along(const V3f& origin, const V3d& direction) {
     const V3f d = to_float(direction.normalized());
     return {origin.x, origin.y, origin.z, std::numeric_limits<float>::infinity(), d.x, d.y, d.z, 0.0F};
+}
+
+V3f to_float(const V3d& v) {
+    return V3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
 
 Ray ray_through(const V3f& origin, const V3f& target) {

@@ -38,6 +38,8 @@ class Random {
     std::mt19937 engine_;
 };
 
+V3f to_float(const V3d& v);
+
 /// A ray from `origin` through `target`, both as they are in single precision.
 Ray ray_through(const V3f& origin, const V3f& target);
 Ray ray_along(const V3f& origin, const V3d& direction);

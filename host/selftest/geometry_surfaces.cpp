@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t rays_per_value = 16384;
 
-V3f to_float(const V3d& v) {
-    return V3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-}
-
 V3d perpendicular(const V3d& n, Random& random) {
     return n.cross(random.direction()).normalized();
 }

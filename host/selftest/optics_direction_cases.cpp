@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tristim::selftest {
 namespace {
 
 using namespace optics;
-
-constexpr Real pi = std::numbers::pi_v<Real>;
 
 std::string describe(const char* what, const cl_float4& v) {
     return fmt::format("{} ({:.9g}, {:.9g}, {:.9g}, {:.9g})", what, v.s[0], v.s[1], v.s[2], v.s[3]);

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tristim::selftest::optics {
 namespace {
-
-constexpr Real pi = std::numbers::pi_v<Real>;
 
 /// α² tan² θ.
 Real stretched_tangent2(const Ggx& ggx, const Vector& w) {

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <complex>
+#include <numbers>
 
 /// What the optics cases compare the kernels with: textbook formulas in long double.
 namespace tristim::selftest::optics {
 
 using Real = long double;
+constexpr Real pi = std::numbers::pi_v<Real>;
 using Complex = std::complex<Real>;
 using Vector = std::array<Real, 3>;
 

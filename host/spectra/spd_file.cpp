@@ -18,7 +18,7 @@ namespace tristim {
 
 namespace {
 
-double parse_number(std::string_view word, const std::string& name, int line) {
+double parse_column(std::string_view word, const std::string& name, int line) {
     // std::from_chars knows no leading '+', which other programs write.
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     double number = 0.0;
@@ -49,7 +49,7 @@ Spectrum parse_spd(std::string_view text, const std::string& name) {
             rest.remove_prefix(begin);
             const std::string_view word = rest.substr(0, rest.find_first_of(white_space));
             rest.remove_prefix(word.size());
-            const double number = parse_number(word, name, line);
+            const double number = parse_column(word, name, line);
             if (!pair_is_open && !lambda_nm.empty() && number <= lambda_nm.back())
                 fail("{}:{}: the wavelengths do not ascend: {} nm follows {} nm", name, line, number, lambda_nm.back());
             (pair_is_open ? values : lambda_nm).push_back(number);

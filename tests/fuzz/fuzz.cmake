@@ -15,6 +15,7 @@ add_library(tristim_loaders STATIC ${LOADER_SOURCES} ${EMBEDDED_CPP} ${FUZZ_DIR}
             ${FUZZ_DIR}/scratch.cpp)
 # Texts cut into pieces, without a line of code.
 set_source_files_properties(${EMBEDDED_CPP} PROPERTIES COMPILE_OPTIONS "-w;-fno-sanitize=all")
+set_unity_groups(tristim_loaders host 4)
 target_include_directories(tristim_loaders PUBLIC host tests/fuzz)
 target_compile_options(tristim_loaders PUBLIC -O1 -gline-tables-only -fno-omit-frame-pointer -fno-sanitize-recover=all
                        -fsanitize=fuzzer-no-link,${FUZZ_CHECKS})

@@ -12,7 +12,7 @@
 #include <map>
 #include <sstream>
 
-namespace tristim::test {
+namespace tristim::test::photon_faults_test {
 namespace {
 
 using selftest::Measurement;
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(Before, PhotonStabilityCurve,
                          });
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::photon_faults_test

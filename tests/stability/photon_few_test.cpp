@@ -7,7 +7,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace tristim::test {
+namespace tristim::test::few_photons_test {
 namespace {
 
 constexpr int side = 4;
@@ -124,4 +124,4 @@ TEST(PhotonStability, FaintAndStrongLightIsTheSameImage) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::few_photons_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace tristim::test {
+namespace tristim::test::leaks_test {
 namespace {
 
 constexpr int side = 16;
@@ -126,4 +126,4 @@ TEST(PhotonStability, WhatAShallowRidgeLeaksFallsWithTheRadius) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::leaks_test

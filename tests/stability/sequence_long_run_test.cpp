@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tristim::test {
+namespace tristim::test::long_run_test {
 namespace {
 
 using namespace kernel_test;
@@ -100,7 +100,7 @@ TEST(SequenceStability, AMillionPassesOfWavelengthsAndPathsAreIndependent) {
 
 /// χ² of independence itself, on pairs that are known to be independent, or not.
 TEST(SequenceStability, DependenceOfPairsIsMeasured) {
-    Random random(3);
+    kernel_test::Random random(3);
     PairCounts independent(16, 16), same(16, 16), slightly(16, 16), uneven(16, 16), one_row(16, 16);
     for (int i = 0; i < 100000; ++i) {
         const double x = random(), y = random();
@@ -118,4 +118,4 @@ TEST(SequenceStability, DependenceOfPairsIsMeasured) {
 }
 
 } // namespace
-} // namespace tristim::test
+} // namespace tristim::test::long_run_test
