@@ -244,9 +244,9 @@ typedef struct FilmPixel {
 } FilmPixel;
 
 // What errors are estimated from: planes of one float for each pixel. Three (X, Y, Z) for each group of each level, then the sums of
-// the bias and of its square. A level's batches are 4 times as long as those of the one before; the first one's hold 4 passes.
+// the bias and of its square. A level's batches are 4 times as long as those of the one before; the first one's hold 2 passes.
 #define ERROR_LEVELS 6
-#define ERROR_GROUP_BITS 2
+#define ERROR_GROUP_BITS 3
 #define ERROR_GROUPS (1 << ERROR_GROUP_BITS)
 #define ERROR_BIAS_PLANE (3 * ERROR_LEVELS * ERROR_GROUPS)
 #define ERROR_PLANES (ERROR_BIAS_PLANE + 6)

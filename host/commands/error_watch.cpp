@@ -6,7 +6,7 @@
 namespace tristim {
 namespace {
 
-/// With fewer there are not four batches of the first level, and nothing to tell noise by but the plain spread.
+/// Fewer show four sizes of blocks or less, too few to tell how the noise falls.
 constexpr std::uint64_t fewest_passes = 16;
 /// Reading the sums from the devices costs about as much again.
 constexpr double seconds_per_estimating_second = 200.0;

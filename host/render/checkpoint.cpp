@@ -23,7 +23,7 @@ namespace tristim {
 namespace {
 
 /// Counts up when files of before no longer mean the same.
-constexpr const char* file_version = "1";
+constexpr const char* file_version = "2";
 constexpr std::string_view prefix = "tristim:";
 constexpr std::string_view settings_prefix = "tristim:setting:";
 constexpr std::string_view mark = "tristim:checkpoint";

@@ -1,34 +1,20 @@
 #include "render/error_estimate.h"
 
+#include "render/error_contrasts.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace tristim {
 namespace {
 
 constexpr int window_reach = 3; // pixels
-constexpr double least_batches = 4.0;
-constexpr std::size_t most_levels = 3;
 
 /// A value for each pixel.
 using Plane = std::vector<double>;
-
-int batch_bits(int level) {
-    return 2 * (level + 1);
-}
-
-std::uint32_t group_of_batch(std::uint32_t batch, int level) {
-    // A turn for every ERROR_GROUPS batches: lowbias32 (Wellons 2018, "Prospecting for Hash Functions").
-    std::uint32_t x = batch / ERROR_GROUPS + 0x9e3779b9U * static_cast<std::uint32_t>(level + 1);
-    x = (x ^ x >> 16U) * 0x7feb352dU;
-    x = (x ^ x >> 15U) * 0x846ca68bU;
-    return (batch + (x ^ x >> 16U)) % ERROR_GROUPS;
-}
 
 /// Means over the pixels within window_reach in x and in y.
 Plane window_means(const Plane& plane, int width) {
@@ -47,77 +33,6 @@ Plane window_means(const Plane& plane, int width) {
         return sums;
     };
     return along(along(plane, width, height, 1, width), height, width, width, 1);
-}
-
-/// How passes fall into the groups of a level.
-struct Grouping {
-    std::array<double, ERROR_GROUPS> passes{};  ///< in each
-    std::array<double, ERROR_GROUPS> squares{}; ///< sums of squares of the sizes of its batches
-    double all_passes = 0.0;
-    double all_squares = 0.0;
-
-    /// Passes in a batch.
-    double batch() const { return all_squares / all_passes; }
-};
-
-Grouping group_passes(const PassRanges& passes, int level) {
-    Grouping grouping;
-    const int bits = batch_bits(level);
-    const auto add_batch = [&](std::uint64_t batch, double size) {
-        const std::uint32_t group = group_of_batch(static_cast<std::uint32_t>(batch), level);
-        grouping.passes[group] += size;
-        grouping.squares[group] += size * size;
-        grouping.all_passes += size;
-        grouping.all_squares += size * size;
-    };
-    std::uint64_t batch = std::numeric_limits<std::uint64_t>::max();
-    double size = 0.0;
-    for (const PassRanges::Range& range : passes.ranges()) {
-        for (std::uint64_t pass = range.begin; pass < range.end;) {
-            const std::uint64_t end = std::min<std::uint64_t>(((pass >> bits) + 1) << bits, range.end);
-            if (size > 0.0 && pass >> bits != batch) {
-                add_batch(batch, size);
-                size = 0.0;
-            }
-            batch = pass >> bits;
-            size += static_cast<double>(end - pass);
-            pass = end;
-        }
-    }
-    if (size > 0.0)
-        add_batch(batch, size);
-    return grouping;
-}
-
-/// The variance of the mean of a batch about the mean of all passes, v(B) − v(n), of each pixel.
-struct Spread {
-    double batch = 1.0; ///< B
-    Plane plane;
-};
-
-/// From the groups' sums S_j: with a share f_j of the passes, S_j − f_j S has the variance
-/// (1 − f_j)² Σ_{k in j} b_k² V + f_j² Σ_{k not in j} b_k² V for batches of b_k passes and a variance V of their means.
-Plane group_spread(const RenderSums& sums, const Grouping& grouping, int level, std::size_t channel) {
-    const std::size_t pixels = sums.film.size();
-    double expected = 0.0;
-    for (std::size_t j = 0; j < ERROR_GROUPS; ++j) {
-        const double share = grouping.passes[j] / grouping.all_passes;
-        expected += (1.0 - share) * (1.0 - share) * grouping.squares[j] +
-                    share * share * (grouping.all_squares - grouping.squares[j]);
-    }
-    Plane plane(pixels);
-    const std::size_t first = 3 * static_cast<std::size_t>(level) * ERROR_GROUPS + channel;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        std::array<double, ERROR_GROUPS> group{};
-        double all = 0.0;
-        for (std::size_t j = 0; j < ERROR_GROUPS; ++j)
-            all += group[j] = sums.error[(first + 3 * j) * pixels + i];
-        for (std::size_t j = 0; j < ERROR_GROUPS; ++j) {
-            const double rest = group[j] - grouping.passes[j] / grouping.all_passes * all;
-            plane[i] += rest * rest / expected;
-        }
-    }
-    return plane;
 }
 
 /// The variance of single passes about their mean.
@@ -142,83 +57,142 @@ Plane plain_variance(const RenderSums& sums, std::size_t channel) {
     return plane;
 }
 
-/// v(n) = c n^-a from v(B) − v(n) for some B. Least squares of logarithms over a, with a weak belief in what scenes
-/// showed: a = 1.3 ± 0.4.
+/// The sum of the squares of a set of contrasts, of each pixel.
+Plane contrast_squares(const RenderSums& sums, const ContrastSet& set, std::size_t channel) {
+    const std::size_t pixels = sums.film.size();
+    const std::size_t first = 3 * static_cast<std::size_t>(set.level) * ERROR_GROUPS + channel;
+    Plane plane(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        std::array<double, ERROR_GROUPS> groups{};
+        double all = 0.0;
+        for (std::size_t g = 0; g < ERROR_GROUPS; ++g)
+            all += groups[g] = sums.error[(first + 3 * g) * pixels + i];
+        for (const ErrorContrast& contrast : set.contrasts) {
+            double value = -contrast.share * all;
+            for (std::size_t g = 0; g < ERROR_GROUPS; ++g)
+                value += contrast.factors[g] * groups[g];
+            plane[i] += value * value;
+        }
+    }
+    return plane;
+}
+
+/// Squares of each pixel whose sum tells of the noise.
+struct Evidence {
+    BlockSquares squares{};
+    double batch = 1.0; ///< passes of the blocks that it compares
+    double freedom = 0.0;
+    std::vector<Plane> planes; ///< X, Y, Z; means over windows
+};
+
+std::vector<Evidence> evidence(const RenderSums& sums, int width) {
+    std::vector<Evidence> result(1);
+    const auto passes = static_cast<double>(sums.passes.count());
+    // Σ (x_i − mean)² over the passes.
+    result[0].squares = block_squares(sums.passes);
+    for (double& square : result[0].squares)
+        square = passes - square / passes;
+    result[0].freedom = passes - 1.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        Plane plane = pass_spread(sums, c);
+        for (double& value : plane)
+            value *= passes;
+        result[0].planes.push_back(window_means(plane, width));
+    }
+    for (const ContrastSet& set : error_contrasts(sums.passes)) {
+        result.push_back({set.squares, set.batch, set.freedom, {}});
+        for (std::size_t c = 0; c < 3; ++c)
+            result.back().planes.push_back(window_means(contrast_squares(sums, set, c), width));
+    }
+    return result;
+}
+
+/// The variance of the mean of all passes by a mixture of two powers of n, from sums of squares. For each of some
+/// shares of the two their size follows, and a likelihood, as if the squares were of independent Gaussian numbers (so
+/// that they have gamma distributions); the mean over the shares, weighted by likelihood, is taken.
 class Extrapolation {
   public:
-    Extrapolation(std::vector<double> batches, double passes) : passes_(passes) {
-        const double last = batches.size() > 1 ? largest_slope : 1.0;
-        for (double a = 1.0; a < last + 0.01; a += 0.1) {
-            Slope slope{a, {}};
-            for (const double batch : batches)
-                slope.model.push_back(std::log(std::pow(batch, -a) - std::pow(passes, -a)));
-            slopes_.push_back(slope);
+    Extrapolation(const std::vector<Evidence>& evidence, const PassRanges& passes) {
+        const auto coarsest = std::max_element(evidence.begin(), evidence.end(),
+                                               [](const auto& a, const auto& b) { return a.batch < b.batch; });
+        const auto n = static_cast<double>(passes.count());
+        const BlockSquares all = block_squares(passes);
+        for (const Evidence& e : evidence) {
+            weights_.push_back(std::min(e.freedom, most_freedom) * e.batch / coarsest->batch);
+            all_weights_ += weights_.back();
+        }
+        // Without blocks to compare, the plain spread is told.
+        const int last = evidence.size() > 1 ? shares : 0;
+        for (int i = 0; i <= last; ++i) {
+            const double fast = static_cast<double>(i) / shares;
+            const auto mixed = [&](const BlockSquares& squares) {
+                return (1.0 - fast) * variance_by_power(squares, slow_power) /
+                           variance_by_power(coarsest->squares, slow_power) +
+                       fast * variance_by_power(squares, fast_power) / variance_by_power(coarsest->squares, fast_power);
+            };
+            Mixture mixture;
+            for (std::size_t e = 0; e < evidence.size(); ++e) {
+                const double expected = mixed(evidence[e].squares);
+                mixture.factors.push_back(weights_[e] / expected / all_weights_);
+                mixture.likelihood -= pixels_of_window * weights_[e] * std::log(expected);
+            }
+            mixture.variance = mixed(all) / (n * n);
+            mixtures_.push_back(mixture);
         }
     }
 
-    double operator()(const std::array<double, most_levels>& spreads) const {
-        const std::size_t count = slopes_.front().model.size();
-        std::array<double, most_levels> logs{};
-        for (std::size_t l = 0; l < count; ++l) {
-            // A spread of none is told from one that happens to be small by the others.
-            if (!(spreads[l] > 0.0))
-                return spreads[0] > 0.0 ? spreads[0] / (passes_ - 1.0) : 0.0;
-            logs[l] = std::log(spreads[l]);
+    double operator()(const std::vector<Evidence>& evidence, std::size_t channel, std::size_t pixel) const {
+        std::array<double, shares + 1> sizes{}, likelihoods{};
+        double most = -std::numeric_limits<double>::infinity();
+        for (std::size_t m = 0; m < mixtures_.size(); ++m) {
+            for (std::size_t e = 0; e < evidence.size(); ++e)
+                sizes[m] += mixtures_[m].factors[e] * evidence[e].planes[channel][pixel];
+            if (!(sizes[m] > 0.0))
+                return 0.0;
+            likelihoods[m] = mixtures_[m].likelihood - pixels_of_window * all_weights_ * std::log(sizes[m]);
+            most = std::max(most, likelihoods[m]);
         }
-        double least = std::numeric_limits<double>::infinity(), best = spreads[0] / (passes_ - 1.0);
-        for (const Slope& slope : slopes_) {
-            double mean = 0.0, squares = 0.0;
-            for (std::size_t l = 0; l < count; ++l)
-                mean += (logs[l] - slope.model[l]) / static_cast<double>(count);
-            for (std::size_t l = 0; l < count; ++l)
-                squares += (logs[l] - slope.model[l] - mean) * (logs[l] - slope.model[l] - mean);
-            const double off = (slope.a - expected_slope) / slope_deviation;
-            const double badness = weight * squares + off * off;
-            if (badness < least) {
-                least = badness;
-                best = std::exp(mean - slope.a * std::log(passes_));
-            }
+        double sum = 0.0, weights = 0.0;
+        for (std::size_t m = 0; m < mixtures_.size(); ++m) {
+            const double weight = std::exp(likelihoods[m] - most);
+            sum += weight * sizes[m] * mixtures_[m].variance;
+            weights += weight;
         }
-        return best;
+        return sum / weights;
     }
 
   private:
-    struct Slope {
-        double a;
-        std::vector<double> model; ///< log(B^-a − n^-a)
+    struct Mixture {
+        std::vector<double> factors; ///< by which evidence adds up to the size
+        double likelihood = 0.0;     ///< its logarithm, less what depends on the size
+        double variance = 0.0;       ///< of the mean, for a size of 1
     };
-    static constexpr double largest_slope = 2.4, expected_slope = 1.3, slope_deviation = 0.4;
-    static constexpr double weight = 6.0; ///< half of some twelve degrees of freedom of a spread over a window
+    // Passes that nothing orders against each other; and what lies between an edge in two stratified dimensions, n^-3/2
+    // (Mitchell 1996, "Consequences of Stratified Sampling in Graphics"), and a smooth function of one, n^-2.
+    static constexpr double slow_power = 1.0, fast_power = 1.75;
+    static constexpr int shares = 12;
+    // More tell no more: from one size of blocks to the next, sequences do not follow powers.
+    static constexpr double most_freedom = 4.0;
+    static constexpr double pixels_of_window = 0.5 * (2 * window_reach + 1) * (2 * window_reach + 1);
 
-    double passes_;
-    std::vector<Slope> slopes_;
+    std::vector<double> weights_;
+    double all_weights_ = 0.0;
+    std::vector<Mixture> mixtures_;
 };
 
-/// The variance of each pixel's mean, in one channel.
-Plane noise_variance(const RenderSums& sums, int width, std::size_t channel) {
-    const auto passes = static_cast<double>(sums.passes.count());
-    if (passes < 2.0)
-        return plain_variance(sums, channel);
-    std::vector<Spread> spreads{{1.0, window_means(pass_spread(sums, channel), width)}};
-    for (int level = 0; level < ERROR_LEVELS; ++level) {
-        const Grouping grouping = group_passes(sums.passes, level);
-        if (grouping.batch() * least_batches <= passes && grouping.batch() > spreads.back().batch)
-            spreads.push_back({grouping.batch(), window_means(group_spread(sums, grouping, level, channel), width)});
+/// The variance of each pixel's mean, in X, Y and Z.
+std::array<Plane, 3> noise_variances(const RenderSums& sums, int width) {
+    if (sums.passes.count() < 2)
+        return {plain_variance(sums, 0), plain_variance(sums, 1), plain_variance(sums, 2)};
+    const std::vector<Evidence> known = evidence(sums, width);
+    const Extrapolation extrapolate(known, sums.passes);
+    std::array<Plane, 3> variances;
+    for (std::size_t c = 0; c < 3; ++c) {
+        variances[c].resize(sums.film.size());
+        for (std::size_t i = 0; i < sums.film.size(); ++i)
+            variances[c][i] = extrapolate(known, c, i);
     }
-    if (spreads.size() > most_levels)
-        spreads.erase(spreads.begin(), spreads.end() - most_levels);
-    std::vector<double> batches;
-    for (const Spread& spread : spreads)
-        batches.push_back(spread.batch);
-    const Extrapolation extrapolate(batches, passes);
-    Plane variance(sums.film.size());
-    for (std::size_t i = 0; i < variance.size(); ++i) {
-        std::array<double, most_levels> values{};
-        for (std::size_t l = 0; l < spreads.size(); ++l)
-            values[l] = spreads[l].plane[i];
-        variance[i] = extrapolate(values);
-    }
-    return variance;
+    return variances;
 }
 
 /// The bias of a channel and the variance of that estimate.
@@ -267,13 +241,6 @@ double significant_mean(const Plane& plane, int width) {
 
 } // namespace
 
-std::uint32_t error_groups(std::uint32_t pass) {
-    std::uint32_t groups = 0;
-    for (int level = 0; level < ERROR_LEVELS; ++level)
-        groups |= group_of_batch(pass >> batch_bits(level), level) << (level * ERROR_GROUP_BITS);
-    return groups;
-}
-
 ErrorEstimate estimate_error(const RenderSums& sums, int width) {
     ErrorEstimate estimate;
     const std::size_t pixels = sums.film.size();
@@ -282,12 +249,15 @@ ErrorEstimate estimate_error(const RenderSums& sums, int width) {
     estimate.pixel_bias.resize(estimate.complete ? pixels : 0);
     double noise = 0.0, mean_y = 0.0;
     Plane squared_bias(pixels);
+    std::array<Plane, 3> variances;
+    if (estimate.complete)
+        variances = noise_variances(sums, width);
     for (std::size_t c = 0; c < 3; ++c) {
         if (!estimate.complete) {
             noise += mean_of(plain_variance(sums, c)) / 3.0;
             continue;
         }
-        const Plane variance = noise_variance(sums, width, c);
+        const Plane& variance = variances[c];
         noise += mean_of(variance) / 3.0;
         for (std::size_t i = 0; i < pixels; ++i)
             estimate.pixel_noise[i][c] = static_cast<float>(std::sqrt(variance[i]));

@@ -22,16 +22,15 @@ struct ErrorEstimate {
     std::vector<std::array<float, 3>> pixel_bias;  ///< signed, units of XYZ; empty unless complete
 };
 
-/// The group that a pass belongs to at each level: ERROR_GROUP_BITS for each, the first level in the lowest bits. At
-/// level l, passes with the same number over 4^(l+1) are a batch, and each ERROR_GROUPS successive batches go to
-/// different groups, in an order that is turned at random.
-std::uint32_t error_groups(std::uint32_t pass);
-
 /// Noise. Wavelengths, camera rays and photons come from Sobol' sequences over the passes, so that the mean of n passes
 /// has a variance v(n) that falls faster than 1/n: from the spread of single passes it would come out up to fifty times
-/// too large. The spread of groups of batches of B successive passes tells v(B) − v(n) for B = 1, 4, 16, …; through the
-/// largest three B that are in n at least four times, v(n) = c n^-a is fitted and extrapolated to n. Spreads are means
-/// over 7×7 pixels, since pixels that a caustic reaches seldom show no spread while it has not come.
+/// too large. What two halves of a block of 2 B passes differ by tells v(B) − v(2B), for B = 1, 2, 4, … up to n/2 (the
+/// Haar wavelet variance, also known as Allan's; Percival 1995, "On estimation of the wavelet variance", Biometrika
+/// 82(3)). The covariance of two passes of a sequence that is scrambled digit by digit depends on the xor of their
+/// numbers alone, so the v(2^h) together give v of any passes (error_contrasts.h): a mean of 48 has a larger error than
+/// a power law between 32 and 64 would have it. Beyond what was seen, a mixture of 1/n and n^-1.75 is fitted, largest
+/// blocks first. Squares are means over 7×7 pixels, since pixels that a caustic reaches seldom show no spread while it
+/// has not come.
 ///
 /// Bias. To first order the density within a radius r is off by r² times a Laplacian (Hachisuka, Jarosz & Jensen 2010,
 /// "A Progressive Error Estimation Framework for Photon Density Estimation", equation 10; Knaus & Zwicker 2011, section

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "render/error_estimate.h"
+#include "render/error_contrasts.h"
 #include "render/radius_schedule.h"
 
 #include <algorithm>
