@@ -201,6 +201,39 @@ TEST(ErrorEstimate, BiasIsThatOfTheSearchRadius) {
     EXPECT_LT(3.77 * error, 0.5 * std::abs(expected)) << "too few renders to tell";
 }
 
+/// What the two radii differ by, in each pass, about a known bias; the image's mean is 1.
+TEST(ErrorEstimate, BiasStandsOutFromItsOwnNoise) {
+    constexpr std::uint32_t passes = 64;
+    constexpr double spread = 0.1; // the error of the mean is 0.1/√12/√64 = 0.0036
+    const auto stated = [](const std::function<double(std::size_t)>& bias) {
+        RenderSums sums = sums_of(PassRanges(0, passes), pixels, [](std::size_t, std::uint32_t) { return 1.0; });
+        for (std::size_t i = 0; i < pixels; ++i) {
+            double sum = 0.0, squares = 0.0;
+            for (std::uint32_t pass = 0; pass < passes; ++pass) {
+                const double value = bias(i) + spread * (random_number(i, pass) - 0.5);
+                sum += value;
+                squares += value * value;
+            }
+            for (std::size_t c = 0; c < 3; ++c) {
+                sums.error[(ERROR_BIAS_PLANE + c) * pixels + i] = static_cast<float>(sum);
+                sums.error[(ERROR_BIAS_PLANE + 3 + c) * pixels + i] = static_cast<float>(squares);
+            }
+        }
+        return estimate_error(sums, side);
+    };
+    const auto wave = [](std::size_t i) { return 0.02 * std::sin(static_cast<double>(i % side) / 3.0); };
+    double squares = 0.0;
+    for (std::size_t i = 0; i < pixels; ++i)
+        squares += wave(i) * wave(i) / pixels;
+    const ErrorEstimate biased = stated(wave);
+    // Spread over 25 tiles, of which a tenth counts as chance: see significant_mean().
+    EXPECT_NEAR(biased.bias, std::sqrt(squares), 0.1 * std::sqrt(squares));
+    EXPECT_EQ(biased.rmse, biased.bias) << "the passes are all the same";
+    for (std::size_t i = 0; i < pixels; ++i)
+        EXPECT_NEAR(biased.pixel_bias[i][1], wave(i), 6.0 * 0.0036);
+    EXPECT_LT(stated([](std::size_t) { return 0.0; }).bias, 0.5 * 0.0036);
+}
+
 TEST(ErrorTrend, FollowsAPowerLaw) {
     ErrorTrend trend;
     const auto error = [](double n) { return 3.0 * std::pow(n, -0.4); };
