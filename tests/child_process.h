@@ -33,7 +33,7 @@ struct ChildLimits {
     std::optional<rlim_t> memory;                             ///< bytes of address space
     std::optional<std::chrono::milliseconds> interrupt_after; ///< counted from its first line on stderr
     int interrupt_signal = SIGINT;
-    std::optional<int> pending_signal; ///< sent at the start, and held back until the program catches it
+    std::optional<int> pending_signal = {}; ///< sent at the start, and held back until the program catches it
 };
 
 namespace child_detail {
