@@ -1,5 +1,6 @@
 // What tells the noise of passes that are stratified against each other: their groups, sums over blocks of them, and
 // the variance of a mean by the covariances that scrambled sequences have.
+#include "error_groups.h"
 #include "render/error_contrasts.h"
 
 #include <gtest/gtest.h>
@@ -12,10 +13,6 @@
 
 namespace tristim::test {
 namespace {
-
-std::uint32_t group_at(std::uint32_t pass, int level) {
-    return error_groups(pass) >> (level * ERROR_GROUP_BITS) & (ERROR_GROUPS - 1);
-}
 
 TEST(ErrorGroups, NeighbouringBatchesAreInNeighbouringGroups) {
     for (int level = 0; level < ERROR_LEVELS; ++level) {

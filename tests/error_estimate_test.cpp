@@ -1,8 +1,8 @@
 // Errors told without a reference: noise from the spread of groups of passes, bias from two radii, and
 // what the command makes of them.
 #include "child_process.h"
+#include "error_groups.h"
 #include "image_statistics.h"
-#include "render/error_contrasts.h"
 #include "render/error_estimate.h"
 #include "render/error_trend.h"
 #include "scene_folder.h"
@@ -16,10 +16,6 @@ namespace tristim::test {
 namespace {
 
 constexpr const char* scene_path = TRISTIM_SOURCE_DIR "/meshes/box/scene.pbrt";
-
-std::uint32_t group_at(std::uint32_t pass, int level) {
-    return error_groups(pass) >> (level * ERROR_GROUP_BITS) & (ERROR_GROUPS - 1);
-}
 
 /// The sums of passes whose samples are given by pixel and pass.
 RenderSums sums_of(const PassRanges& passes, std::size_t pixels,
