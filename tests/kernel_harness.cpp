@@ -29,12 +29,6 @@ double turn(double x, double y) {
     return fraction < 0.0 ? fraction + 1.0 : fraction;
 }
 
-const Device& test_device() {
-    // Never destroyed: at the end of the process an OpenCL implementation may be gone before it.
-    static const Device& device = *new Device(open_device(""));
-    return device;
-}
-
 ::cl::Program build_test_program(const std::string& text, const Macros& macros) {
     return build_program_from_text(test_device(), "test.cl", text, macros, {});
 }

@@ -4,6 +4,7 @@
 
 #include "opencl/buffer.h"
 #include "opencl/program.h"
+#include "test_device.h"
 
 #include <array>
 #include <cstdint>
@@ -42,8 +43,7 @@ std::array<Vec3, 2> tangents(const Vec3& n);
 /// The angle of (x, y) as a fraction of a turn, in [0, 1).
 double turn(double x, double y);
 
-/// The device that tests run on, opened once.
-const Device& test_device();
+using test::test_device;
 
 /// A program of a test's own; its text may #include kernel headers and files.
 ::cl::Program build_test_program(const std::string& text, const Macros& macros = {});

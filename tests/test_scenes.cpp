@@ -23,11 +23,6 @@ int add_material(Scene& scene, const Material& material) {
 
 } // namespace
 
-const Device& test_device() {
-    static const Device device = open_device("");
-    return device;
-}
-
 bool long_tests() {
     const char* value = std::getenv("TRISTIM_LONG_TESTS");
     return value != nullptr && std::string(value) == "1";

@@ -3,15 +3,13 @@
 #include "opencl/device.h"
 #include "render/options.h"
 #include "scene/scene.h"
+#include "test_device.h"
 
 #include <cstdlib>
 #include <functional>
 #include <string>
 
 namespace tristim::test {
-
-/// The device that all tests render on, opened once in a process.
-const Device& test_device();
 
 /// Whether the long statistical tests were asked for (TRISTIM_LONG_TESTS=1 in the environment).
 bool long_tests();
