@@ -1,10 +1,10 @@
 // Several ranks render one image: host/mpi/joint_render.h. Here they are threads; tests/mpirun_test.cpp has processes.
 
+#include "all_take_part.h"
 #include "mpi/joint_render.h"
 #include "test_scenes.h"
 #include "thread_ranks.h"
 
-#include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <optional>
@@ -14,7 +14,6 @@ namespace tristim::test {
 namespace {
 
 constexpr std::uint64_t passes = 60;
-constexpr int most_attempts = 10;
 
 RenderOptions options() {
     RenderOptions options = small_render("tristimulus:2", 16, 12, 2048, 0.1, 16);
@@ -71,14 +70,7 @@ RenderOutcome render(
 }
 
 TEST(JointRender, RanksDoNotShowInTheImage) {
-    RenderOutcome outcome;
-    // On a busy machine a rank may come to its first pass when all are done: then once more.
-    const auto took_part = [](const DeviceShare& share) { return share.passes > 0; };
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
-        outcome = render({"", "", ""});
-        if (std::all_of(outcome.shares.begin(), outcome.shares.end(), took_part))
-            break;
-    }
+    const RenderOutcome outcome = render_until_all_take_part([] { return render({"", "", ""}); });
     expect_same_image(outcome.sums, expected());
     EXPECT_EQ(outcome.sums.passes, PassRanges(0, passes));
     EXPECT_EQ(outcome.sums.photons_stored, expected().photons_stored);

@@ -1,13 +1,13 @@
 // Renders on several devices, and on devices that fail: host/render/team.h. The devices are one, opened several times;
 // tests/backends_test.cpp has different ones.
 
+#include "all_take_part.h"
 #include "child_process.h"
 #include "render/team.h"
 #include "scene_folder.h"
 #include "test_scenes.h"
 
 #include <OpenImageIO/imageio.h>
-#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -43,11 +43,6 @@ RenderOutcome render(const std::vector<std::string>& faults) {
     return team.outcome();
 }
 
-bool all_took_part(const RenderOutcome& outcome) {
-    return !outcome.shares.empty() && std::all_of(outcome.shares.begin(), outcome.shares.end(),
-                                                  [](const DeviceShare& share) { return share.passes > 0; });
-}
-
 Bits bits(const RenderOutcome& outcome) {
     return developed(outcome.sums, options()).xyz;
 }
@@ -72,10 +67,8 @@ bool same(const Bits& a, const Bits& b) {
 TEST(Team, SharingDoesNotShow) {
     const Bits expected = alone(passes);
     for (const std::size_t count : {1, 3}) {
-        RenderOutcome outcome;
-        // On a busy machine a device may come to its first pass when all are done.
-        for (int attempt = 0; attempt < 10 && !all_took_part(outcome); ++attempt)
-            outcome = render(std::vector<std::string>(count));
+        const RenderOutcome outcome =
+            render_until_all_take_part([count] { return render(std::vector<std::string>(count)); });
         EXPECT_TRUE(same(bits(outcome), expected)) << count << " devices";
         EXPECT_EQ(outcome.statistics.passes, passes);
         EXPECT_EQ(outcome.statistics.photons_emitted, passes * 2048);
@@ -159,7 +152,6 @@ TEST(Team, GivesOutSumsWhileItRenders) {
     EXPECT_EQ(all.passes, PassRanges(0, static_cast<std::uint32_t>(all.passes.count())));
 }
 
-/// Radii that follow each pixel's statistics are in the sums, so that passes can go on in order, and in no other.
 /// Such as for want of memory. The devices' threads end first, and what they have done can still be had.
 TEST(Team, WhatGoOnThrowsComesOut) {
     Team team(load_scene(scene_path), options(), devices({"", ""}));
@@ -167,6 +159,7 @@ TEST(Team, WhatGoOnThrowsComesOut) {
     EXPECT_TRUE(holds_passes(team.outcome().sums.film, team.outcome().statistics.passes));
 }
 
+/// Radii that follow each pixel's statistics are in the sums, so that passes can go on in order, and in no other.
 TEST(Team, StatisticsRadiiGoOn) {
     RenderOptions statistics = options();
     statistics.statistics_radius = true;
